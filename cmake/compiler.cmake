@@ -1,0 +1,24 @@
+# Warnings, sanitizers, and the compiler cache and faster linker where they are installed.
+
+set(CMAKE_CXX_FLAGS_RELEASE "-O2 -DNDEBUG")
+set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O1 -g")  # the sanitizer builds: asserts stay on
+
+add_library(motes_compiler INTERFACE)
+target_compile_options(motes_compiler INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wold-style-cast -Wunused -Woverloaded-virtual
+  -Werror=return-type
+  # Results must not depend on errno or on trapping; NaN and infinity keep their meaning.
+  -fno-math-errno -fno-trapping-math)
+if(MOTES_SANITIZE)
+  add_compile_options(-fsanitize=${MOTES_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  add_link_options(-fsanitize=${MOTES_SANITIZE})
+endif()
+
+find_program(CCACHE_PROGRAM ccache)
+if(CCACHE_PROGRAM)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
+endif()
+find_program(MOLD_PROGRAM mold)
+if(MOLD_PROGRAM)
+  add_link_options(-fuse-ld=mold)
+endif()

@@ -1,0 +1,135 @@
+// The scene: everything that a picture needs besides the particles, as checked plain data.
+//
+// Scene is what a scene file says; what it leaves open is nullopt and is filled in from the data.
+// ResolvedScene has nothing open: it is what the engines and the reference take.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "core/report.h"
+#include "particles/particle_set.h"
+#include "scene/camera.h"
+#include "scene/transfer_function.h"
+
+namespace motes {
+
+/// Gaussian kernel: phi(d) = kernel_scale * weight * exp(-d^2 / (2 radius^2)) where
+/// d <= support_factor * radius, else 0 (Knoll et al. 2014, Eq. 2).
+struct Kernel {
+  double support_factor = 2;  ///< sigma, > 0
+  double kernel_scale = 1;    ///< kappa
+  bool operator==(const Kernel&) const = default;
+};
+
+/// Which particles a field takes; all that is given must hold.
+struct Selection {
+  std::vector<std::string> species;
+  std::optional<std::pair<std::uint64_t, std::uint64_t>> index;  ///< first and last, both included
+  std::string expression;  ///< over properties: "z > 3 && species == 'Si'"
+  bool operator==(const Selection&) const = default;
+};
+
+/// A number for all particles, or the name of a property.
+using NumberOrProperty = std::variant<double, std::string>;
+
+/// A built-in colour map whose range and extinction may be left to the data.
+struct NamedTransferFunction {
+  std::string name;
+  std::optional<std::pair<double, double>> range;
+  std::optional<double> extinction;
+  bool log_scale = false;
+  bool operator==(const NamedTransferFunction&) const = default;
+};
+
+struct Field {
+  std::string name;
+  Selection select;
+  std::optional<NumberOrProperty> radius;  ///< nullopt: particles' default radii
+  std::optional<NumberOrProperty> weight;  ///< nullopt: 1, or what the data suggest
+  std::optional<bool> normalise;  ///< divide by the truncated kernel's integral; nullopt: as the data suggest
+  std::variant<std::monostate, TransferFunction, NamedTransferFunction> transfer_function;
+  bool operator==(const Field&) const = default;
+};
+
+struct Lighting {
+  bool enabled = true;
+  double ambient = 0.3, diffuse = 0.7, specular = 0.2, shininess = 32;
+  std::optional<Vector3d> direction;  ///< towards the light, world axes; nullopt: headlight
+  bool operator==(const Lighting&) const = default;
+};
+
+enum class Engine { sweep, coherent, direct };
+
+struct RenderSettings {
+  int width = 1024, height = 1024;
+  std::optional<double> step_size;  ///< length; nullopt: from the radii
+  double termination_opacity = 0.97;
+  Lighting lighting;
+  Color background;
+  Engine engine = Engine::coherent;
+  bool operator==(const RenderSettings&) const = default;
+};
+
+struct Scene {
+  std::filesystem::path data_path;
+  std::uint64_t frame = 0;
+  std::map<int, std::string> types;
+  std::optional<Point3d> eye, target;  ///< nullopt: fitted to the data
+  std::optional<Vector3d> up;
+  std::optional<double> fov_degrees, orthographic_height;
+  Kernel kernel;
+  std::vector<Field> fields;  ///< empty: one field of all particles, or as the data suggest
+  RenderSettings render;
+  bool operator==(const Scene&) const = default;
+};
+
+/// The particles of one field with all that its kernels need, checked: positions are finite, radii
+/// finite and > 0, weights finite. Particles that fail are left out, with a warning that counts them.
+struct FieldSource {
+  std::string name;
+  Kernel kernel;
+  bool normalise = false;
+  std::vector<std::uint32_t> index;  ///< into the ParticleSet, increasing
+  std::vector<float> radius;         ///< standard deviation, file's length unit; one an index, or one for all
+  std::vector<float> weight;         ///< one an index, or one for all
+
+  float radius_of(std::size_t i) const { return radius[radius.size() == 1 ? 0 : i]; }
+  float weight_of(std::size_t i) const { return weight[weight.size() == 1 ? 0 : i]; }
+};
+
+struct ResolvedScene {
+  std::vector<FieldSource> fields;
+  std::vector<TransferFunction> transfer_functions;  ///< one a field
+  Camera camera;
+  double step_size = 0;
+  RenderSettings render;
+};
+
+/// Reads a scene file (docs/scene.md); relative paths are relative to it. Throws Error that names
+/// the file, the line where JSON itself is broken or the key ("fields[0].radius"), and what was expected;
+/// an unknown key names the nearest known one.
+Scene read_scene(const std::filesystem::path& path);
+/// The same from text; `path` is for messages and for relative paths.
+Scene parse_scene(std::string_view json, const std::filesystem::path& path);
+/// Scene as JSON that read_scene() reads back to an equal Scene; data_path relative to `directory`.
+std::string scene_to_json(const Scene& scene, const std::filesystem::path& directory);
+
+/// What `select` takes of `particles`: indices, increasing. Throws Error for unknown species,
+/// properties or a bad expression, naming what there is.
+std::vector<std::uint32_t> select_particles(const ParticleSet& particles, const Selection& select);
+
+/// The particles, radii and weights of a field. `kernel` is the scene's. Defaults: radius is the property
+/// "radius" where the reader gave one, else the species' covalent radii, else half the mean distance
+/// of neighbours; weight 1, but "mass" with `normalise` where radii come from smoothing lengths.
+/// Throws Error for unknown properties and where no particle is left.
+FieldSource make_field_source(const ParticleSet& particles, const Field& field, const Kernel& kernel,
+                              Warnings& warnings);
+
+}  // namespace motes

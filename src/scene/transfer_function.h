@@ -1,0 +1,39 @@
+// Value of a field -> colour and extinction.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace motes {
+
+/// Linear RGB; [0, 1] is what a screen shows, more is allowed.
+struct Color {
+  float r = 0, g = 0, b = 0;
+  bool operator==(const Color&) const = default;
+};
+
+/// Piecewise linear in the field's value, or in its base-10 logarithm where `log_scale`; clamped at
+/// its ends. With log_scale a value of zero or less takes the first point's colour and extinction.
+struct TransferFunction {
+  struct Point {
+    double value = 0;       ///< field's unit, strictly increasing; not a logarithm, also with log_scale
+    Color color;            ///< linear
+    double extinction = 0;  ///< per unit length, >= 0
+    bool operator==(const Point&) const = default;
+  };
+  std::vector<Point> points;  ///< at least one
+  bool log_scale = false;
+
+  bool operator==(const TransferFunction&) const = default;
+};
+
+/// Names of the built-in colour maps: viridis, magma, inferno, plasma, heat, grey.
+const std::vector<std::string>& color_map_names();
+
+/// A built-in colour map over [low, high], extinction rising linearly from 0 to `extinction`.
+/// Throws Error for an unknown name (naming the nearest) or an empty range.
+TransferFunction named_transfer_function(std::string_view name, double low, double high,
+                                         double extinction, bool log_scale = false);
+
+}  // namespace motes

@@ -1,0 +1,31 @@
+#include "core/error.h"
+
+#include <gtest/gtest.h>
+
+namespace motes {
+namespace {
+
+TEST(Error, NamesFileAndLine) {
+  EXPECT_STREQ(Error("a.xyz", 3, "expected a number").what(), "a.xyz:3: expected a number");
+  EXPECT_STREQ(Error("a.xyz", "is empty").what(), "a.xyz: is empty");
+  EXPECT_STREQ(Error("no memory").what(), "no memory");
+}
+
+TEST(Error, StaysOnOneLineWhateverTheFileIsCalled) {
+  EXPECT_EQ(std::string(Error("a\nb", "bad").what()), "a\\x0ab: bad");
+}
+
+TEST(Printable, EscapesAndCuts) {
+  EXPECT_EQ(printable("tab\there"), "tab\\x09here");
+  EXPECT_EQ(printable(std::string(100, 'x'), 10), "xxxxxxxxxx...");
+}
+
+TEST(NearestWord, FindsTypingMistakes) {
+  const std::vector<std::string> words{"radius", "weight", "select"};
+  EXPECT_EQ(nearest_word("raduis", words), "radius");
+  EXPECT_EQ(nearest_word("wieght", words), "weight");
+  EXPECT_EQ(nearest_word("zzzzzzzz", words), "");
+}
+
+}  // namespace
+}  // namespace motes
