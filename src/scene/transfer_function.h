@@ -5,13 +5,9 @@
 #include <string_view>
 #include <vector>
 
-namespace motes {
+#include "core/color.h"
 
-/// Linear RGB; [0, 1] is what a screen shows, more is allowed.
-struct Color {
-  float r = 0, g = 0, b = 0;
-  bool operator==(const Color&) const = default;
-};
+namespace motes {
 
 /// Piecewise linear in the field's value, or in its base-10 logarithm where `log_scale`; clamped at
 /// its ends. With log_scale a value of zero or less takes the first point's colour and extinction.
