@@ -61,4 +61,18 @@ std::string nearest_word(std::string_view word, const std::vector<std::string>& 
   return best;
 }
 
+Error unknown_name(std::string_view kind, std::string_view name,
+                   const std::vector<std::string>& candidates) {
+  const std::string start = fmt::format("unknown {} '{}'", kind, printable(name));
+  const std::string nearest = nearest_word(name, candidates);
+  if (!nearest.empty())
+    return Error(fmt::format("{}; did you mean '{}'?", start, printable(nearest)));
+  if (candidates.empty()) return Error(fmt::format("{}; there is none here", start));
+  std::string list;
+  for (const std::string& candidate : candidates) {
+    list += (list.empty() ? "" : ", ") + printable(candidate);
+  }
+  return Error(fmt::format("{}; there are: {}", start, printable(list, 200)));
+}
+
 }  // namespace motes

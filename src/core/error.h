@@ -27,4 +27,8 @@ std::string printable(std::string_view text, std::size_t max_length = 60);
 /// The member of `candidates` nearest to `word` (edit distance), or "" if none is near.
 std::string nearest_word(std::string_view word, const std::vector<std::string>& candidates);
 
+/// "unknown KIND 'NAME'; did you mean 'NEAREST'?", or, where none is near, what there is.
+Error unknown_name(std::string_view kind, std::string_view name,
+                   const std::vector<std::string>& candidates);
+
 }  // namespace motes

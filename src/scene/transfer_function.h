@@ -1,6 +1,7 @@
 // Value of a field -> colour and extinction.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,8 +14,8 @@ namespace motes {
 /// its ends. With log_scale a value of zero or less takes the first point's colour and extinction.
 struct TransferFunction {
   struct Point {
-    double value = 0;       ///< field's unit, strictly increasing; not a logarithm, also with log_scale
-    Color color;            ///< linear
+    double value = 0;  ///< field's unit, strictly increasing; not a logarithm, also with log_scale
+    Color color;       ///< linear
     double extinction = 0;  ///< per unit length, >= 0
     bool operator==(const Point&) const = default;
   };
@@ -27,8 +28,12 @@ struct TransferFunction {
 /// Names of the built-in colour maps: viridis, magma, inferno, plasma, heat, grey.
 const std::vector<std::string>& color_map_names();
 
+/// 0xrrggbb, sRGB-encoded, as a linear colour.
+Color color_from_srgb(std::uint32_t rrggbb);
+
 /// A built-in colour map over [low, high], extinction rising linearly from 0 to `extinction`.
-/// Throws Error for an unknown name (naming the nearest) or an empty range.
+/// Throws Error for an unknown name (naming the nearest) or a range that is empty, or not positive
+/// with log_scale.
 TransferFunction named_transfer_function(std::string_view name, double low, double high,
                                          double extinction, bool log_scale = false);
 

@@ -27,5 +27,14 @@ TEST(NearestWord, FindsTypingMistakes) {
   EXPECT_EQ(nearest_word("zzzzzzzz", words), "");
 }
 
+TEST(UnknownName, NamesTheNearestOrAll) {
+  EXPECT_STREQ(unknown_name("key", "raduis", {"radius", "weight"}).what(),
+               "unknown key 'raduis'; did you mean 'radius'?");
+  EXPECT_STREQ(unknown_name("property", "zzzzzzzz", {"radius", "weight"}).what(),
+               "unknown property 'zzzzzzzz'; there are: radius, weight");
+  EXPECT_STREQ(unknown_name("property", "q", {}).what(),
+               "unknown property 'q'; there is none here");
+}
+
 }  // namespace
 }  // namespace motes
