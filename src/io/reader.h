@@ -27,8 +27,8 @@ class Trajectory {
   virtual std::string_view format() const = 0;
   /// Number of frames; the first call may have to index the file.
   virtual std::size_t num_frames() = 0;
-  /// Frame `frame`, from 0. Frame 0 is read without looking at the rest of the file. Throws Error if
-  /// there is no such frame (naming the number of frames) or the file is bad.
+  /// Frame `frame`, from 0. Frame 0 is read without looking at the rest of the file. Throws Error
+  /// if there is no such frame (naming the number of frames) or the file is bad.
   virtual ParticleSet read_frame(std::size_t frame) = 0;
 };
 
@@ -37,5 +37,9 @@ class Trajectory {
 /// `options` and what it points to must outlive the trajectory.
 std::unique_ptr<Trajectory> open_trajectory(const std::filesystem::path& path,
                                             const ReadOptions& options);
+
+/// For Trajectory::read_frame(): throws the Error for a frame beyond the last of `num_frames` > 0.
+[[noreturn]] void throw_no_such_frame(const std::filesystem::path& path, std::size_t frame,
+                                      std::size_t num_frames);
 
 }  // namespace motes
