@@ -1,0 +1,24 @@
+// How far two images are apart.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "image/framebuffer.h"
+
+namespace motes {
+
+struct ImageDifference {
+  double max = 0;                ///< largest absolute difference of a linear channel
+  double rms = 0;                ///< root of the mean square over all channels compared
+  int worst_x = 0, worst_y = 0;  ///< pixel of `max`
+  std::size_t compared = 0;      ///< pixels
+};
+
+/// Compares the four linear channels of `a` and `b`, of the same size, leaving out the pixels whose
+/// flag in `skip` is not 0 (one flag a pixel, rows from the top; empty: all are compared).
+/// A channel that is NaN in either image differs by infinity.
+ImageDifference compare_images(const Framebuffer& a, const Framebuffer& b,
+                               const std::vector<unsigned char>& skip = {});
+
+}  // namespace motes

@@ -1,0 +1,26 @@
+// Images to files, in the format that the file's name asks for.
+#pragma once
+
+#include <filesystem>
+
+#include "core/atomic_file.h"
+#include "core/color.h"
+#include "image/framebuffer.h"
+
+namespace motes {
+
+enum class ImageFormat { png, jpeg, exr, npy };
+
+/// By suffix: .png, .jpg or .jpeg, .exr, .npy, in any case. Throws Error for others.
+ImageFormat image_format(const std::filesystem::path& path);
+
+/// Writes `framebuffer` to `file`, but does not commit it. PNG and JPEG show it as to_display()
+/// does; EXR and NPY hold it as it is.
+void write_image(AtomicFile& file, ImageFormat format, const Framebuffer& framebuffer,
+                 double termination_opacity, const Color& background);
+
+/// The same, whole or not at all, in the format of `path`. Throws Error.
+void write_image(const std::filesystem::path& path, const Framebuffer& framebuffer,
+                 double termination_opacity, const Color& background);
+
+}  // namespace motes
