@@ -1,0 +1,21 @@
+// Selecting particles by an expression over their properties: "z > 3 && species == 'Si'".
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "particles/particle_set.h"
+
+namespace motes {
+
+/// Throws Error if `expression` is not well formed, naming the column and what was expected. Names
+/// of properties are not looked at: they need the particles.
+void check_expression(std::string_view expression);
+
+/// The particles for which `expression` holds, as increasing indices. The language is described in
+/// docs/scene.md, "Expressions". Throws Error as check_expression() does, and for names that the
+/// particles do not have, naming the nearest that they have.
+std::vector<std::uint32_t> select_where(const ParticleSet& particles, std::string_view expression);
+
+}  // namespace motes
