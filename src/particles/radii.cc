@@ -1,0 +1,89 @@
+// Radii from properties, elements or spacing.
+#include "particles/radii.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+
+#include "core/error.h"
+#include "particles/elements.h"
+#include "particles/neighbors.h"
+
+namespace motes {
+
+namespace {
+
+std::vector<std::size_t> count_species(const ParticleSet& particles) {
+  std::vector<std::size_t> counts(particles.species_names.size());
+  for (const std::uint16_t s : particles.species) ++counts[s];
+  return counts;
+}
+
+bool lengths_are_angstrom(const ParticleSet& particles) {
+  const std::string& unit = particles.length_unit;
+  return unit == "angstrom" || unit == "unknown" || unit.empty();
+}
+
+/// Radius of each species, or nothing where most particles are no elements.
+std::optional<std::vector<float>> species_radii(const ParticleSet& particles, Warnings& warnings) {
+  if (particles.species.empty() || !lengths_are_angstrom(particles)) return std::nullopt;
+  const std::vector<std::size_t> counts = count_species(particles);
+  std::vector<float> radii(counts.size(), 0.0F);
+  double sum = 0;
+  std::size_t num_known = 0;
+  for (std::size_t s = 0; s < radii.size(); ++s) {
+    const Element* element = find_element(particles.species_names[s]);
+    if (element == nullptr) continue;
+    radii[s] = element->covalent_radius;
+    sum += element->covalent_radius * static_cast<double>(counts[s]);
+    num_known += counts[s];
+  }
+  if (num_known == 0 || 2 * num_known < particles.size()) return std::nullopt;
+
+  const float mean = static_cast<float>(sum / static_cast<double>(num_known));
+  for (std::size_t s = 0; s < radii.size(); ++s) {
+    if (radii[s] > 0 || counts[s] == 0) continue;
+    radii[s] = mean;
+    warnings.add(
+        fmt::format("species {} is no element; its radius is {:.3g}, the mean of the others",
+                    printable(particles.species_names[s]), mean));
+  }
+  return radii;
+}
+
+}  // namespace
+
+double mean_neighbor_distance(const ParticleSet& particles) {
+  constexpr std::size_t num_samples = 20000;
+  const NeighborTree tree({particles.x, particles.y, particles.z}, particles.cell);
+  double sum = 0;
+  std::size_t count = 0;
+  for (const float distance : tree.sample_nearest_distances(num_samples)) {
+    if (!(distance > 0) || !std::isfinite(distance)) continue;
+    sum += distance;
+    ++count;
+  }
+  return count == 0 ? 0 : sum / static_cast<double>(count);
+}
+
+DefaultRadii default_radii(const ParticleSet& particles, Warnings& warnings) {
+  if (const Property* radius = particles.find_property("radius")) {
+    return {radius->values, "the file's radii or smoothing lengths"};
+  }
+  if (const auto radii = species_radii(particles, warnings)) {
+    std::vector<float> radius(particles.size());
+    std::transform(particles.species.begin(), particles.species.end(), radius.begin(),
+                   [&](std::uint16_t s) { return (*radii)[s]; });
+    return {std::move(radius), "covalent radii (Cordero et al. 2008)"};
+  }
+  const double distance = mean_neighbor_distance(particles);
+  if (distance > 0) {
+    return {{static_cast<float>(distance / 2)}, "half the mean distance of nearest neighbours"};
+  }
+  return {{1.0F}, "1, since no two particles lie apart"};
+}
+
+}  // namespace motes
