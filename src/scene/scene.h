@@ -9,6 +9,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -39,21 +40,30 @@ struct Selection {
 /// A number for all particles, or the name of a property.
 using NumberOrProperty = std::variant<double, std::string>;
 
-/// A built-in colour map whose range and extinction may be left to the data.
+/// The name that is no colour map but stands for the display colours of species.
+inline constexpr std::string_view species_colors = "species";
+
+/// A built-in colour map, or species_colors, whose range, extinction and scale may be left to the
+/// data.
 struct NamedTransferFunction {
   std::string name;
   std::optional<std::pair<double, double>> range;
   std::optional<double> extinction;
-  bool log_scale = false;
+  std::optional<bool> log_scale;
   bool operator==(const NamedTransferFunction&) const = default;
 };
+
+/// More than this no engine takes.
+inline constexpr std::size_t max_fields = 64;
 
 struct Field {
   std::string name;
   Selection select;
   std::optional<NumberOrProperty> radius;  ///< nullopt: particles' default radii
   std::optional<NumberOrProperty> weight;  ///< nullopt: 1, or what the data suggest
-  std::optional<bool> normalise;  ///< divide by the truncated kernel's integral; nullopt: as the data suggest
+  /// Divide by the truncated kernel's integral; nullopt: as the data suggest.
+  std::optional<bool> normalise;
+  std::optional<double> support_factor, kernel_scale;  ///< nullopt: the scene's kernel
   std::variant<std::monostate, TransferFunction, NamedTransferFunction> transfer_function;
   bool operator==(const Field&) const = default;
 };
@@ -91,14 +101,17 @@ struct Scene {
 };
 
 /// The particles of one field with all that its kernels need, checked: positions are finite, radii
-/// finite and > 0, weights finite. Particles that fail are left out, with a warning that counts them.
+/// finite and > 0, weights finite. Particles that fail are left out, with a warning that counts
+/// them.
 struct FieldSource {
   std::string name;
   Kernel kernel;
   bool normalise = false;
   std::vector<std::uint32_t> index;  ///< into the ParticleSet, increasing
-  std::vector<float> radius;         ///< standard deviation, file's length unit; one an index, or one for all
-  std::vector<float> weight;         ///< one an index, or one for all
+  /// Standard deviations, file's length unit; one an index, or one for all.
+  std::vector<float> radius;
+  std::vector<float> weight;  ///< one an index, or one for all
+  Color species_color;        ///< display colour of the species that most of its particles are
 
   float radius_of(std::size_t i) const { return radius[radius.size() == 1 ? 0 : i]; }
   float weight_of(std::size_t i) const { return weight[weight.size() == 1 ? 0 : i]; }
@@ -113,8 +126,8 @@ struct ResolvedScene {
 };
 
 /// Reads a scene file (docs/scene.md); relative paths are relative to it. Throws Error that names
-/// the file, the line where JSON itself is broken or the key ("fields[0].radius"), and what was expected;
-/// an unknown key names the nearest known one.
+/// the file, the line where JSON itself is broken or the key ("fields[0].radius"), and what was
+/// expected; an unknown key names the nearest known one.
 Scene read_scene(const std::filesystem::path& path);
 /// The same from text; `path` is for messages and for relative paths.
 Scene parse_scene(std::string_view json, const std::filesystem::path& path);
@@ -125,11 +138,17 @@ std::string scene_to_json(const Scene& scene, const std::filesystem::path& direc
 /// properties or a bad expression, naming what there is.
 std::vector<std::uint32_t> select_particles(const ParticleSet& particles, const Selection& select);
 
-/// The particles, radii and weights of a field. `kernel` is the scene's. Defaults: radius is the property
-/// "radius" where the reader gave one, else the species' covalent radii, else half the mean distance
-/// of neighbours; weight 1, but "mass" with `normalise` where radii come from smoothing lengths.
-/// Throws Error for unknown properties and where no particle is left.
-FieldSource make_field_source(const ParticleSet& particles, const Field& field, const Kernel& kernel,
-                              Warnings& warnings);
+/// The fields that a scene comes to with these particles: one of all particles where it has none; a
+/// field with species_colors and several species becomes one field a species; all have names.
+/// Throws Error.
+std::vector<Field> expand_fields(const Scene& scene, const ParticleSet& particles);
+
+/// The particles, radii and weights of a field. `kernel` is the scene's. Defaults: radius is the
+/// property "radius" where the reader gave one, else the species' covalent radii, else half the
+/// mean distance of neighbours; weight 1, but "mass" with `normalise` where the particles have it
+/// and the property "radius" is used. Throws Error for unknown properties and where no particle is
+/// left.
+FieldSource make_field_source(const ParticleSet& particles, const Field& field,
+                              const Kernel& kernel, Warnings& warnings);
 
 }  // namespace motes

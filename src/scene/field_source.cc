@@ -1,0 +1,211 @@
+// From a field of the scene to the particles, radii and weights that its kernels need.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "core/error.h"
+#include "particles/elements.h"
+#include "particles/radii.h"
+#include "particles/selection.h"
+#include "scene/scene.h"
+
+namespace motes {
+namespace {
+
+/// Keeps the indices of `index` for which `holds`.
+template <class Predicate>
+void keep_if(std::vector<std::uint32_t>& index, Predicate&& holds) {
+  index.erase(
+      std::remove_if(index.begin(), index.end(), [&](std::uint32_t i) { return !holds(i); }),
+      index.end());
+}
+
+void keep_species(const ParticleSet& particles, const std::vector<std::string>& names,
+                  std::vector<std::uint32_t>& index) {
+  if (particles.species.empty()) {
+    throw Error(fmt::format("select.species: the particles have no species, so none is '{}'",
+                            printable(names.front())));
+  }
+  std::vector<bool> wanted(particles.species_names.size());
+  for (const std::string& name : names) {
+    const auto& known = particles.species_names;
+    const auto it = std::find(known.begin(), known.end(), name);
+    if (it == known.end()) throw unknown_name("species", name, known);
+    wanted[static_cast<std::size_t>(it - known.begin())] = true;
+  }
+  keep_if(index, [&](std::uint32_t i) { return wanted[particles.species[i]]; });
+}
+
+std::vector<std::string> property_names(const ParticleSet& particles) {
+  std::vector<std::string> names;
+  for (const Property& property : particles.properties) names.push_back(property.name);
+  return names;
+}
+
+/// Values of all particles, one a particle or one for all.
+std::vector<float> values_of(const ParticleSet& particles, const NumberOrProperty& source,
+                             std::string_view what) {
+  if (const double* number = std::get_if<double>(&source)) return {static_cast<float>(*number)};
+  const std::string& name = std::get<std::string>(source);
+  if (const Property* property = particles.find_property(name)) return property->values;
+  throw Error(fmt::format("{}: {}", what,
+                          unknown_name("property", name, property_names(particles)).what()));
+}
+
+/// Leaves out the particles that have no place or no kernel, with a warning for each reason.
+class Filter {
+ public:
+  Filter(const Field& field, std::vector<std::uint32_t>& index, Warnings& warnings)
+      : field_(field), index_(index), selected_(index.size()), warnings_(warnings) {}
+
+  template <class Predicate>
+  void require(Predicate&& holds, std::string_view reason) {
+    const std::size_t before = index_.size();
+    keep_if(index_, holds);
+    const std::size_t lost = before - index_.size();
+    if (lost == 0) return;
+    warnings_.add(fmt::format("field '{}': {} of {} particles left out: {}", printable(field_.name),
+                              lost, selected_, reason));
+  }
+
+ private:
+  const Field& field_;
+  std::vector<std::uint32_t>& index_;
+  const std::size_t selected_;
+  Warnings& warnings_;
+};
+
+/// `values` of the particles in `index`; a single value stays single.
+std::vector<float> gather(const std::vector<float>& values,
+                          const std::vector<std::uint32_t>& index) {
+  if (values.size() == 1) return values;
+  std::vector<float> gathered(index.size());
+  std::transform(index.begin(), index.end(), gathered.begin(),
+                 [&values](std::uint32_t i) { return values[i]; });
+  return gathered;
+}
+
+Color species_color(const ParticleSet& particles, const std::vector<std::uint32_t>& index) {
+  // For species that are no elements: colours that are easily told apart, also by colour-blind
+  // people (Okabe and Ito 2008).
+  constexpr std::uint32_t other_colors[] = {0xe69f00, 0x56b4e9, 0x009e73, 0xf0e442,
+                                            0x0072b2, 0xd55e00, 0xcc79a7};
+  if (particles.species.empty()) return {1, 1, 1};
+  std::vector<std::size_t> count(particles.species_names.size());
+  for (const std::uint32_t i : index) ++count[particles.species[i]];
+  const auto most =
+      static_cast<std::size_t>(std::max_element(count.begin(), count.end()) - count.begin());
+  if (const Element* element = find_element(particles.species_names[most])) {
+    const auto& c = element->color;
+    return color_from_srgb(std::uint32_t{c[0]} << 16 | std::uint32_t{c[1]} << 8 | c[2]);
+  }
+  return color_from_srgb(other_colors[most % std::size(other_colors)]);
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> select_particles(const ParticleSet& particles, const Selection& select) {
+  std::vector<std::uint32_t> index;
+  if (select.expression.empty()) {
+    index.resize(particles.size());
+    std::iota(index.begin(), index.end(), std::uint32_t{0});
+  } else {
+    index = select_where(particles, select.expression);
+  }
+  if (select.index) {
+    const auto [first, last] = *select.index;
+    keep_if(index,
+            [first = first, last = last](std::uint32_t i) { return i >= first && i <= last; });
+  }
+  if (!select.species.empty()) keep_species(particles, select.species, index);
+  return index;
+}
+
+FieldSource make_field_source(const ParticleSet& particles, const Field& field,
+                              const Kernel& kernel, Warnings& warnings) {
+  if (particles.size() == 0) throw Error("the file has no particles to render");
+  FieldSource source;
+  source.name = field.name;
+  source.kernel.support_factor = field.support_factor.value_or(kernel.support_factor);
+  source.kernel.kernel_scale = field.kernel_scale.value_or(kernel.kernel_scale);
+  source.index = select_particles(particles, field.select);
+  if (source.index.empty()) {
+    throw Error(fmt::format("field '{}' selects none of the {} particles", printable(field.name),
+                            particles.size()));
+  }
+
+  // Particles with a size and a mass of their own stand for a density of mass.
+  const bool density = !field.radius && !field.weight && particles.find_property("radius") &&
+                       particles.find_property("mass");
+  const std::vector<float> radius = field.radius ? values_of(particles, *field.radius, "radius")
+                                                 : default_radii(particles, warnings).radius;
+  const NumberOrProperty unit = density ? NumberOrProperty("mass") : NumberOrProperty(1.0);
+  const std::vector<float> weight = values_of(particles, field.weight.value_or(unit), "weight");
+  source.normalise = field.normalise.value_or(density);
+
+  Filter filter(field, source.index, warnings);
+  filter.require(
+      [&](std::uint32_t i) {
+        return std::isfinite(particles.x[i]) && std::isfinite(particles.y[i]) &&
+               std::isfinite(particles.z[i]);
+      },
+      "their positions are not finite");
+  filter.require(
+      [&](std::uint32_t i) {
+        const float r = radius[radius.size() == 1 ? 0 : i];
+        return std::isfinite(r) && r > 0;
+      },
+      "their radii are not finite numbers greater than 0");
+  filter.require([&](std::uint32_t i) { return std::isfinite(weight[weight.size() == 1 ? 0 : i]); },
+                 "their weights are not finite");
+  if (source.index.empty()) {
+    throw Error(
+        fmt::format("field '{}': none of its particles has a finite position and weight "
+                    "and a radius greater than 0",
+                    printable(field.name)));
+  }
+
+  source.radius = gather(radius, source.index);
+  source.weight = gather(weight, source.index);
+  source.species_color = species_color(particles, source.index);
+  return source;
+}
+
+std::vector<Field> expand_fields(const Scene& scene, const ParticleSet& particles) {
+  std::vector<Field> wanted = scene.fields;
+  if (wanted.empty()) wanted.emplace_back().name = "all";
+  std::vector<Field> fields;
+  for (std::size_t k = 0; k < wanted.size(); ++k) {
+    Field& field = wanted[k];
+    if (field.name.empty()) field.name = fmt::format("field{}", k);
+    const auto* named = std::get_if<NamedTransferFunction>(&field.transfer_function);
+    if (named == nullptr || named->name != species_colors || particles.species.empty()) {
+      fields.push_back(std::move(field));
+      continue;
+    }
+    // One field a species, in the order of the file's species.
+    std::vector<bool> present(particles.species_names.size());
+    for (const std::uint32_t i : select_particles(particles, field.select)) {
+      present[particles.species[i]] = true;
+    }
+    const auto num_present = std::count(present.begin(), present.end(), true);
+    for (std::size_t s = 0; s < present.size(); ++s) {
+      if (!present[s]) continue;
+      Field one = field;
+      one.select.species = {particles.species_names[s]};
+      if (num_present > 1) {
+        one.name = (wanted.size() == 1 ? "" : field.name + "_") + particles.species_names[s];
+      }
+      fields.push_back(std::move(one));
+    }
+    if (num_present == 0) fields.push_back(std::move(field));
+  }
+  if (fields.size() > max_fields) {
+    throw Error(fmt::format("{} fields; expected at most {}", fields.size(), max_fields));
+  }
+  return fields;
+}
+
+}  // namespace motes

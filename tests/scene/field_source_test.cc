@@ -1,0 +1,170 @@
+// Which particles, radii and weights a field takes, and what it leaves out.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "core/error.h"
+#include "scene/scene.h"
+
+namespace motes {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+ParticleSet silica() {
+  ParticleSet particles;
+  particles.x = {0, 1, 2, 3};
+  particles.y = particles.z = {0, 0, 0, 0};
+  particles.species_names = {"Si", "O"};
+  particles.species = {0, 1, 1, 0};
+  particles.properties = {{"charge", {2, -1, -1, 2}}, {"size", {0.5f, 0, NAN, infinity}}};
+  particles.length_unit = "angstrom";
+  return particles;
+}
+
+template <class F>
+std::string message_of(F&& function) {
+  try {
+    function();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(SelectParticles, AllThatIsGivenMustHold) {
+  const ParticleSet particles = silica();
+  EXPECT_THAT(select_particles(particles, {}), ElementsAre(0, 1, 2, 3));
+  EXPECT_THAT(select_particles(particles, {{"O"}, {}, ""}), ElementsAre(1, 2));
+  EXPECT_THAT(select_particles(particles, {{"Si", "O"}, {{1, 3}}, ""}), ElementsAre(1, 2, 3));
+  EXPECT_THAT(select_particles(particles, {{"O"}, {{2, 99}}, "x < 9"}), ElementsAre(2));
+  EXPECT_THAT(select_particles(particles, {{"Si"}, {}, "charge < 0"}), testing::IsEmpty());
+}
+
+TEST(SelectParticles, NamesWhatThereIs) {
+  EXPECT_THAT(message_of([] {
+                select_particles(silica(), {{"Sj"}, {}, ""});
+              }),
+              HasSubstr("unknown species 'Sj'; did you mean 'Si'?"));
+  ParticleSet bare = silica();
+  bare.species.clear();
+  EXPECT_THAT(message_of([&] {
+                select_particles(bare, {{"Si"}, {}, ""});
+              }),
+              HasSubstr("no species"));
+}
+
+TEST(MakeFieldSource, DefaultsToCovalentRadiiAndWeightOne) {
+  Warnings warnings;
+  const FieldSource source = make_field_source(silica(), {}, {}, warnings);
+  EXPECT_THAT(source.index, ElementsAre(0, 1, 2, 3));
+  EXPECT_THAT(source.radius, ElementsAre(1.11f, 0.66f, 0.66f, 1.11f));
+  EXPECT_THAT(source.weight, ElementsAre(1));
+  EXPECT_FALSE(source.normalise);
+  EXPECT_THAT(warnings.lines(), testing::IsEmpty());
+}
+
+TEST(MakeFieldSource, TakesNumbersAndProperties) {
+  Warnings warnings;
+  Field field;
+  field.select.species = {"O"};
+  field.radius = 2.5;
+  field.weight = "charge";
+  field.normalise = true;
+  field.support_factor = 3;
+  const FieldSource source = make_field_source(silica(), field, {2.5, 7}, warnings);
+  EXPECT_THAT(source.index, ElementsAre(1, 2));
+  EXPECT_THAT(source.radius, ElementsAre(2.5f));
+  EXPECT_THAT(source.weight, ElementsAre(-1, -1));
+  EXPECT_TRUE(source.normalise);
+  EXPECT_EQ(source.kernel, (Kernel{3, 7}));
+}
+
+TEST(MakeFieldSource, TakesMassAsDensityWhereParticlesHaveASize) {
+  ParticleSet particles = silica();
+  particles.properties = {{"h", {2, 2, 2, 2}}, {"radius", {1, 1, 1, 2}}, {"mass", {3, 4, 5, 6}}};
+  Warnings warnings;
+  FieldSource source = make_field_source(particles, {}, {}, warnings);
+  EXPECT_THAT(source.radius, ElementsAre(1, 1, 1, 2));
+  EXPECT_THAT(source.weight, ElementsAre(3, 4, 5, 6));
+  EXPECT_TRUE(source.normalise);
+  Field field;
+  field.weight = 1.0;
+  source = make_field_source(particles, field, {}, warnings);
+  EXPECT_THAT(source.weight, ElementsAre(1));
+  EXPECT_FALSE(source.normalise);
+}
+
+TEST(MakeFieldSource, LeavesOutWhatHasNoKernelAndCounts) {
+  ParticleSet particles = silica();
+  Warnings warnings;
+  Field field;
+  field.name = "f";
+  field.radius = "size";
+  EXPECT_THAT(make_field_source(particles, field, {}, warnings).index, ElementsAre(0));
+  EXPECT_THAT(warnings.lines(),
+              ElementsAre("field 'f': 3 of 4 particles left out: their radii are not finite "
+                          "numbers greater than 0"));
+
+  particles.x[1] = NAN;
+  particles.z[2] = -infinity;
+  particles.properties[0].values[3] = NAN;
+  field.radius = 1.0;
+  field.weight = "charge";
+  warnings = {};
+  EXPECT_THAT(make_field_source(particles, field, {}, warnings).index, ElementsAre(0));
+  EXPECT_THAT(warnings.lines(),
+              ElementsAre("field 'f': 2 of 4 particles left out: their positions are not finite",
+                          "field 'f': 1 of 4 particles left out: their weights are not finite"));
+}
+
+TEST(MakeFieldSource, RefusesFieldsWithoutParticles) {
+  Warnings warnings;
+  Field field;
+  field.name = "f";
+  field.select.expression = "x > 10";
+  EXPECT_EQ(message_of([&] { make_field_source(silica(), field, {}, warnings); }),
+            "field 'f' selects none of the 4 particles");
+  EXPECT_THAT(message_of([&] { make_field_source(ParticleSet{}, {}, {}, warnings); }),
+              HasSubstr("no particles"));
+  field.select = {};
+  field.radius = "charg";
+  EXPECT_EQ(message_of([&] { make_field_source(silica(), field, {}, warnings); }),
+            "radius: unknown property 'charg'; did you mean 'charge'?");
+}
+
+TEST(ExpandFields, GivesOneFieldOfAllByDefault) {
+  const auto fields = expand_fields({}, silica());
+  ASSERT_EQ(fields.size(), 1u);
+  EXPECT_EQ(fields[0].name, "all");
+  EXPECT_EQ(fields[0].select, Selection{});
+}
+
+TEST(ExpandFields, SpeciesColoursMakeAFieldOfEachSpecies) {
+  Scene scene;
+  scene.fields.resize(1);
+  scene.fields[0].transfer_function = NamedTransferFunction{"species", {}, {}, {}};
+  const auto fields = expand_fields(scene, silica());
+  ASSERT_EQ(fields.size(), 2u);
+  EXPECT_EQ(fields[0].name, "Si");
+  EXPECT_THAT(fields[0].select.species, ElementsAre("Si"));
+  EXPECT_EQ(fields[1].name, "O");
+
+  Warnings warnings;
+  const Color oxygen = make_field_source(silica(), fields[1], {}, warnings).species_color;
+  EXPECT_GT(oxygen.r, 4 * oxygen.g);
+}
+
+TEST(ExpandFields, RefusesMoreThanAnEngineTakes) {
+  Scene scene;
+  scene.fields.resize(max_fields + 1);
+  EXPECT_THAT(message_of([&] { expand_fields(scene, silica()); }), HasSubstr("at most 64"));
+}
+
+}  // namespace
+}  // namespace motes
