@@ -1,0 +1,59 @@
+// All kernels of all fields with their tree, ready to be sampled: what rendering keeps of the
+// particles.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "bvh/bvh.h"
+#include "core/aligned.h"
+#include "particles/particle_set.h"
+#include "scene/scene.h"
+
+namespace motes {
+
+/// What the kernels of one field share.
+struct FieldKernels {
+  std::string name;
+  Kernel kernel;
+  bool normalise = false;
+  bool mixed_signs = false;  ///< weights of both signs: sum |phi| is not |Phi|
+  float min_radius = 0;      ///< internal length
+  double value_scale = 1;    ///< internal weight = weight * value_scale, a power of two
+
+  /// Factor on an internal weight (already over radius^3 where normalised) that gives a kernel's
+  /// peak: kappa, and with `normalise` one over the integral of exp(-s^2/2) within s <= sigma.
+  double peak_factor() const;
+};
+
+/// Positions, radii and weights of all fields' kernels in leaf order of their one tree. A particle
+/// that several fields take is there once a field. Arrays are padded to whole leaves with kernels
+/// so far away that nothing meets them.
+///
+/// Lengths are internal: file's length times length_scale, a power of two that brings the extent of
+/// the data near 1, so that no square overflows and the results are those of the file's units, bit
+/// for bit. Values are internal too (FieldKernels::value_scale).
+struct KernelSet {
+  Point3d origin;  ///< of positions; file's lengths, world axes
+  double length_scale = 1;
+  AlignedVector<float> x, y, z, radius, weight;
+  AlignedVector<std::uint8_t>
+      field;  ///< index of each kernel's field; empty if there is only one field
+  std::vector<FieldKernels> fields;
+  Bounds3d centers;        ///< of all kernels; file's lengths, world axes
+  double max_support = 0;  ///< the largest support radius; file's lengths
+  Bvh bvh;
+
+  std::size_t size() const { return bvh.num_particles; }
+  /// Bytes of the per-particle arrays.
+  std::size_t particle_bytes() const;
+  /// The volume's box: centres extended by the largest support radius; file's lengths, world axes.
+  Bounds3d box() const { return centers.extended(max_support); }
+};
+
+/// Gathers the fields' particles and builds the tree. Throws Error for too many fields or kernels.
+KernelSet build_kernel_set(const ParticleSet& particles, const std::vector<FieldSource>& fields);
+
+}  // namespace motes

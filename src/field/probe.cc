@@ -1,0 +1,73 @@
+#include "field/probe.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace motes {
+namespace {
+
+/// Which children of a node may have a kernel that reaches the internal point p: extended bounds,
+/// rounded up.
+unsigned children_around(const Bvh::Node& node, const Point3d& p, double support_factor) {
+  unsigned hits = 0;
+  for (std::size_t c = 0; c < Bvh::width; ++c) {
+    const double reach = node.max_radius[c] * support_factor;
+    const Bounds3d box{{node.min_x[c], node.min_y[c], node.min_z[c]},
+                       {node.max_x[c], node.max_y[c], node.max_z[c]}};
+    if (box.extended(reach * (1 + 1e-12)).contains(p)) hits |= 1u << c;
+  }
+  return hits;
+}
+
+/// Adds the kernels of a leaf to `sums`, one FieldSample a field, internal units.
+void add_leaf(const KernelSet& kernels, std::size_t leaf, const Point3d& p, FieldSample* sums) {
+  const std::size_t begin = leaf * Bvh::leaf_size;
+  const std::size_t end = std::min(begin + Bvh::leaf_size, kernels.size());
+  for (std::size_t i = begin; i < end; ++i) {
+    const std::size_t f = kernels.field.empty() ? 0 : kernels.field[i];
+    const double radius = kernels.radius[i];
+    const double support = radius * kernels.fields[f].kernel.support_factor;
+    const Vector3d d = p - Point3d{kernels.x[i], kernels.y[i], kernels.z[i]};
+    const double distance_sq = dot(d, d);
+    if (distance_sq > support * support) continue;
+    const double phi = kernels.weight[i] * std::exp(-distance_sq / (2 * radius * radius));
+    sums[f].value += phi;
+    sums[f].gradient = sums[f].gradient - (phi / (radius * radius)) * d;
+  }
+}
+
+}  // namespace
+
+std::vector<FieldSample> probe(const KernelSet& kernels, std::span<const Point3d> points) {
+  const std::size_t num_fields = kernels.fields.size();
+  double support_factor = 0;
+  std::vector<double> unit;  // from internal values to the field's
+  for (const FieldKernels& field : kernels.fields) {
+    support_factor = std::max(support_factor, field.kernel.support_factor);
+    unit.push_back(field.peak_factor() / field.value_scale);
+  }
+  std::vector<FieldSample> samples(points.size() * num_fields);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points.size(), 64), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i != range.end(); ++i) {
+      FieldSample* const sums = samples.data() + i * num_fields;
+      const Vector3d relative = kernels.length_scale * (points[i] - kernels.origin);
+      const Point3d p{relative.x, relative.y, relative.z};
+      traverse(
+          kernels.bvh,
+          [&](const Bvh::Node& node) { return children_around(node, p, support_factor); },
+          [&](std::size_t leaf) { add_leaf(kernels, leaf, p, sums); });
+      const bool finite = std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+      for (std::size_t f = 0; f < num_fields; ++f) {
+        const double factor = finite ? unit[f] : std::numeric_limits<double>::quiet_NaN();
+        sums[f].value *= factor;
+        sums[f].gradient = factor * kernels.length_scale * sums[f].gradient;
+      }
+    }
+  });
+  return samples;
+}
+
+}  // namespace motes

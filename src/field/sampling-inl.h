@@ -1,0 +1,188 @@
+// What the samplers share: tests of the tree's nodes and of a leaf's kernels against a packet's
+// part of a slab, sixteen at a time, and the exponential. Included once per instruction set (no
+// include guard of the usual kind: Highway's foreach_target includes it again for each).
+#if defined(MOTES_FIELD_SAMPLING_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef MOTES_FIELD_SAMPLING_INL_H_
+#undef MOTES_FIELD_SAMPLING_INL_H_
+#else
+#define MOTES_FIELD_SAMPLING_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+
+#include "bvh/bvh.h"
+#include "field/kernel_set.h"
+#include "field/slab_frame.h"
+#include "samples/lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace motes {
+namespace HWY_NAMESPACE {
+
+/// Exponents below this are cut off: 2^-125 is the least power whose mantissa stays normal.
+inline constexpr float min_exponent = -125.0f;
+
+/// 2^x, relative error below 3e-7, for x in [min_exponent, 0.5]; anything outside gives garbage.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V exp2_bounded(D d, V x) {
+  // Adding 1.5 * 2^23 rounds to an integer n and leaves n in the low bits of the sum.
+  const V shifter = hn::Set(d, 12582912.0f);
+  const V sum = hn::Add(x, shifter);
+  const V f = hn::Sub(x, hn::Sub(sum, shifter));  // in [-1/2, 1/2]
+  // Minimax polynomial of 2^f, relative error 8e-8.
+  V p = hn::Set(d, 1.327647189e-03f);
+  p = hn::MulAdd(p, f, hn::Set(d, 9.675541334e-03f));
+  p = hn::MulAdd(p, f, hn::Set(d, 5.550713274e-02f));
+  p = hn::MulAdd(p, f, hn::Set(d, 2.402211972e-01f));
+  p = hn::MulAdd(p, f, hn::Set(d, 6.931469671e-01f));
+  p = hn::MulAdd(p, f, hn::Set(d, 1.000000072e+00f));
+  // Times 2^n: add n to the exponent.
+  const hn::RebindToSigned<D> di;
+  return hn::BitCast(d, hn::Add(hn::BitCast(di, p), hn::ShiftLeft<23>(hn::BitCast(di, sum))));
+}
+
+/// What the kernels of a field share, in the units of the arithmetic.
+struct FieldConstants {
+  float support_factor;
+  float peak_factor;
+  float threshold;  ///< exponent (base 2) at the support radius: -sigma^2/2 log2(e)
+};
+
+struct SamplingConstants {
+  FieldConstants fields[max_fields];
+  float max_support_factor = 0;
+};
+
+inline SamplingConstants make_constants(const KernelSet& kernels) {
+  SamplingConstants constants;
+  for (std::size_t f = 0; f < kernels.fields.size(); ++f) {
+    const double sigma = kernels.fields[f].kernel.support_factor;
+    const auto threshold = static_cast<float>(-0.5 * sigma * sigma * std::numbers::log2e);
+    constants.fields[f] = {static_cast<float>(sigma),
+                           static_cast<float>(kernels.fields[f].peak_factor()),
+                           std::max(threshold, min_exponent)};
+    constants.max_support_factor =
+        std::max(constants.max_support_factor, static_cast<float>(sigma));
+  }
+  return constants;
+}
+
+/// Which children of a node may have a kernel that reaches into the frame: bit c for child c.
+/// Conservative: the child's extended bounds are not wholly outside one of the frustum's planes.
+HWY_INLINE unsigned node_hits(const Bvh::Node& node, const SlabFrame& frame, float support_factor) {
+  const hn::CappedTag<float, Bvh::width> d;
+  using V = hn::Vec<decltype(d)>;
+  // Rounding of world coordinates, which are near 1 (KernelSet::length_scale).
+  const V slack = hn::Set(d, 2e-6f);
+  unsigned hits = 0;
+  for (std::size_t c = 0; c < Bvh::width; c += hn::Lanes(d)) {
+    const V reach = hn::MulAdd(hn::Set(d, support_factor), hn::Load(d, node.max_radius + c), slack);
+    V outside = hn::Set(d, -1e30f);
+    for (const FrustumPlane& plane : frame.planes) {
+      // The corner of the box that lies furthest inwards.
+      const float* x = (plane.world[0] > 0 ? node.min_x : node.max_x) + c;
+      const float* y = (plane.world[1] > 0 ? node.min_y : node.max_y) + c;
+      const float* z = (plane.world[2] > 0 ? node.min_z : node.max_z) + c;
+      V distance = hn::Set(d, -plane.world_offset);
+      distance = hn::MulAdd(hn::Set(d, plane.world[0]), hn::Load(d, x), distance);
+      distance = hn::MulAdd(hn::Set(d, plane.world[1]), hn::Load(d, y), distance);
+      distance = hn::MulAdd(hn::Set(d, plane.world[2]), hn::Load(d, z), distance);
+      outside = hn::Max(outside, distance);
+    }
+    hits |= mask_bits(d, hn::Le(outside, reach)) << c;
+  }
+  return hits;
+}
+
+/// The kernels of a leaf in a frame: where they lie, and which of them reach into it. Lengths are
+/// relative to the frame's reference, in camera axes.
+struct LeafKernels {
+  alignas(64) float x[Bvh::leaf_size], y[Bvh::leaf_size], z[Bvh::leaf_size];
+  alignas(64) float first[Bvh::leaf_size],
+      last[Bvh::leaf_size];  ///< planes it may reach, within the slab
+  unsigned reaches;          ///< bit i: kernel i of the leaf does
+};
+
+/// v in camera axis `row` of the frame.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V to_camera(D d, const SlabFrame& frame, int row, V x, V y, V z) {
+  const V sum =
+      hn::MulAdd(hn::Set(d, frame.axes[row][0]), x, hn::Mul(hn::Set(d, frame.axes[row][1]), y));
+  return hn::MulAdd(hn::Set(d, frame.axes[row][2]), z, sum);
+}
+
+/// How far a point lies outside a pair of opposite sides; 0 between them. `lateral` is its
+/// coordinate across the sides, `n` the component of their normals along it.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V outside_sides(D d, const FrustumPlane& low, const FrustumPlane& high, float low_n,
+                           float high_n, V lateral, V z) {
+  const V a = hn::MulAdd(hn::Set(d, low_n), lateral,
+                         hn::MulSub(hn::Set(d, low.z), z, hn::Set(d, low.offset)));
+  const V b = hn::MulAdd(hn::Set(d, high_n), lateral,
+                         hn::MulSub(hn::Set(d, high.z), z, hn::Set(d, high.offset)));
+  return hn::Max(hn::Zero(d), hn::Max(a, b));
+}
+
+/// Places the kernels of a leaf in the frame and culls them against its sides and planes.
+HWY_INLINE void load_leaf(const KernelSet& kernels, std::size_t leaf, const SlabFrame& frame,
+                          float support_factor, LeafKernels& out) {
+  const hn::CappedTag<float, Bvh::leaf_size> d;
+  using V = hn::Vec<decltype(d)>;
+  const V zero = hn::Zero(d), inverse_step = hn::Set(d, 1.0f / frame.step);
+  const V last_plane = hn::Set(d, static_cast<float>(frame.count - 1));
+  const V rounding = hn::Set(d, 1e-4f + 1e-6f * static_cast<float>(frame.count));  // of planes
+  out.reaches = 0;
+  for (std::size_t i = 0; i < Bvh::leaf_size; i += hn::Lanes(d)) {
+    const std::size_t at = leaf * Bvh::leaf_size + i;
+    V world[3];
+    const float* const arrays[3] = {kernels.x.data(), kernels.y.data(), kernels.z.data()};
+    for (int j = 0; j < 3; ++j) {
+      world[j] = hn::Sub(hn::Sub(hn::Load(d, arrays[j] + at), hn::Set(d, frame.reference_high[j])),
+                         hn::Set(d, frame.reference_low[j]));
+    }
+    const V x = to_camera(d, frame, 0, world[0], world[1], world[2]);
+    const V y = to_camera(d, frame, 1, world[0], world[1], world[2]);
+    const V z = to_camera(d, frame, 2, world[0], world[1], world[2]);
+    const V support = hn::Mul(hn::Load(d, kernels.radius.data() + at), hn::Set(d, support_factor));
+
+    // A lower bound of the distance to the frustum's sides, exact where only one is in the way.
+    const FrustumPlane* sides = frame.planes;
+    const V out_x = outside_sides(d, sides[0], sides[1], sides[0].x, sides[1].x, x, z);
+    const V out_y = outside_sides(d, sides[2], sides[3], sides[2].y, sides[3].y, y, z);
+    const V distance_sq =
+        hn::Mul(hn::MulAdd(out_x, out_x, hn::Mul(out_y, out_y)), hn::Set(d, frame.corner_factor));
+    const V support_sq = hn::Mul(support, support);
+
+    // Which planes: the samples at distance rho >= sqrt(distance_sq) from the centre, measured
+    // across the ray, lie at most sqrt(R^2 - rho^2) cos + rho sin in front of it or behind.
+    const V rho = hn::Sqrt(distance_sq);
+    const V half_chord = hn::Sqrt(hn::Max(zero, hn::Sub(support_sq, distance_sq)));
+    const V slanted = hn::MulAdd(half_chord, hn::Set(d, frame.max_cosine),
+                                 hn::Mul(rho, hn::Set(d, frame.max_sine)));
+    const auto upright = hn::Le(rho, hn::Mul(support, hn::Set(d, frame.max_sine)));
+    const V reach = hn::IfThenElse(upright, support, slanted);
+    const V middle = hn::Mul(hn::Sub(z, hn::Set(d, frame.first_depth)), inverse_step);
+    const V planes = hn::MulAdd(reach, inverse_step, rounding);
+    const V first = hn::Max(zero, hn::Ceil(hn::Sub(middle, planes)));
+    const V last = hn::Min(last_plane, hn::Floor(hn::Add(middle, planes)));
+    const auto reaches = hn::And(hn::Le(distance_sq, support_sq), hn::Le(first, last));
+
+    hn::Store(x, d, out.x + i);
+    hn::Store(y, d, out.y + i);
+    hn::Store(z, d, out.z + i);
+    hn::Store(first, d, out.first + i);
+    hn::Store(last, d, out.last + i);
+    out.reaches |= mask_bits(d, reaches) << i;
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace motes
+HWY_AFTER_NAMESPACE();
+
+#endif
