@@ -1,0 +1,82 @@
+#include "integrate/classifier.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+#include "samples/samples.h"
+
+namespace motes {
+namespace {
+
+/// A point with its argument: what the segments interpolate over.
+struct Knot {
+  double argument;
+  double values[4];
+};
+
+/// Extinction where the argument is that of a field value of zero.
+double extinction_of_zero(const std::vector<Knot>& knots, bool log_scale) {
+  if (log_scale || 0 <= knots.front().argument) return knots.front().values[3];
+  for (std::size_t i = 1; i < knots.size(); ++i) {
+    const Knot &a = knots[i - 1], &b = knots[i];
+    if (0 < b.argument) {
+      return a.values[3] + (b.values[3] - a.values[3]) * -a.argument / (b.argument - a.argument);
+    }
+  }
+  return knots.back().values[3];
+}
+
+}  // namespace
+
+Classifier compile_transfer_function(const TransferFunction& function, double value_scale,
+                                     double step_size) {
+  assert(!function.points.empty());
+  std::vector<Knot> knots;
+  for (const TransferFunction::Point& p : function.points) {
+    const double argument = function.log_scale ? std::log10(p.value) : p.value * value_scale;
+    knots.push_back({argument, {p.color.r, p.color.g, p.color.b, p.extinction * step_size}});
+  }
+
+  Classifier c;
+  c.log_scale = function.log_scale;
+  c.log_shift = static_cast<float>(-std::log10(value_scale));
+  // A single point is one flat segment.
+  const std::size_t segments = std::max<std::size_t>(1, knots.size() - 1);
+  c.num_segments = static_cast<int>(segments);
+  const std::size_t padded = (segments + max_lanes - 1) / max_lanes * max_lanes;
+  const auto clear = [&](AlignedVector<float>& v) { v.assign(padded, 0.0f); };
+  clear(c.begin);
+  clear(c.inverse_width);
+  for (int i = 0; i < 4; ++i) {
+    clear(c.base[i]);
+    clear(c.rise[i]);
+  }
+  for (std::size_t s = 0; s < segments; ++s) {
+    const Knot &a = knots[s], &b = knots[std::min(s + 1, knots.size() - 1)];
+    c.begin[s] = static_cast<float>(a.argument);
+    const double width = b.argument - a.argument;
+    c.inverse_width[s] = width > 0 ? static_cast<float>(std::min(1 / width, 1e38)) : 0.0f;
+    for (int i = 0; i < 4; ++i) {
+      c.base[i][s] = static_cast<float>(a.values[i]);
+      c.rise[i][s] = static_cast<float>(b.values[i] - a.values[i]);
+    }
+  }
+
+  // The transparent beginning: up to the last of the leading points without extinction.
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  const auto visible =
+      std::find_if(knots.begin(), knots.end(), [](const Knot& k) { return k.values[3] > 0; });
+  if (visible == knots.begin()) {
+    c.transparent_below = -infinity;
+  } else if (visible == knots.end()) {
+    c.transparent_below = infinity;
+  } else {
+    c.transparent_below = static_cast<float>((visible - 1)->argument);
+  }
+  c.zero_is_transparent = extinction_of_zero(knots, function.log_scale) == 0;
+  return c;
+}
+
+}  // namespace motes

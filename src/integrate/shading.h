@@ -1,0 +1,17 @@
+// What pass 2 needs besides the transfer functions, in the units of the sample buffer.
+#pragma once
+
+#include <vector>
+
+namespace motes {
+
+struct ShadingConstants {
+  float termination_opacity = 0.97f;
+  float ambient = 1, diffuse = 0, specular = 0,
+        shininess = 1;  ///< used where the buffer has gradients
+  bool headlight = true;
+  float light[3] = {0, 0, -1};    ///< unit vector towards the light, camera axes; unless headlight
+  std::vector<float> min_radius;  ///< internal length, one a field
+};
+
+}  // namespace motes
