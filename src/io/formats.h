@@ -3,9 +3,4 @@
 
 #include "io/format.h"
 
-namespace motes {
-
-const Format& lammps_dump_format();
-const Format& xyz_format();
-
-}  // namespace motes
+namespace motes {}  // namespace motes

@@ -1,0 +1,238 @@
+#include "reference/render.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace motes::reference {
+
+namespace {
+
+/// Relative to the distance from the eye for lengths, absolute for opacities.
+constexpr double stability_tolerance = 1e-5;
+
+/// All fields' kernels, and what of the scene is the same for every ray.
+struct Volume {
+  std::vector<std::vector<ParticleKernel>> fields;
+  std::vector<double> smallest_radius;  ///< of each field's particles
+  Bounds3d box;
+  Vector3d forward;
+  double near = 0,
+         far = -1;  ///< depths between which all of the box lies; far < near without particles
+};
+
+Volume make_volume(const ParticleSet& particles, const ResolvedScene& scene) {
+  Volume volume;
+  for (const FieldSource& source : scene.fields) {
+    volume.fields.push_back(particle_kernels(particles, source));
+    double smallest = std::numeric_limits<double>::infinity();
+    for (const ParticleKernel& kernel : volume.fields.back()) {
+      smallest = std::min(smallest, kernel.radius);
+    }
+    volume.smallest_radius.push_back(smallest);
+  }
+  volume.box = volume_box(volume.fields);
+  volume.forward = normalize(scene.camera.target - scene.camera.eye);
+  if (volume.box.empty()) return volume;
+  volume.near = std::numeric_limits<double>::infinity();
+  volume.far = -volume.near;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Point3d p{corner & 1 ? volume.box.max.x : volume.box.min.x,
+                    corner & 2 ? volume.box.max.y : volume.box.min.y,
+                    corner & 4 ? volume.box.max.z : volume.box.min.z};
+    const double depth = dot(p - scene.camera.eye, volume.forward);
+    volume.near = std::min(volume.near, depth);
+    volume.far = std::max(volume.far, depth);
+  }
+  return volume;
+}
+
+/// Distance from x to the surface of the box.
+double distance_to_faces(const Bounds3d& box, const Point3d& x) {
+  // Along each axis: how far x lies outside (positive) or inside (negative) of the nearer face.
+  Vector3d outside;
+  for (int axis = 0; axis < 3; ++axis) {
+    outside[axis] = std::max(box.min[axis] - x[axis], x[axis] - box.max[axis]);
+  }
+  const double nearest = std::max({outside.x, outside.y, outside.z});
+  if (nearest <= 0) return -nearest;
+  return length(
+      Vector3d{std::max(outside.x, 0.), std::max(outside.y, 0.), std::max(outside.z, 0.)});
+}
+
+/// The kernels that a sample of the ray can lie in, or within the tolerance of: nothing else adds
+/// to the field or makes it unstable, and leaving the others out only saves time.
+std::vector<ParticleKernel> kernels_near_ray(const std::vector<ParticleKernel>& kernels,
+                                             const CameraRay& ray, const Point3d& eye) {
+  std::vector<ParticleKernel> near;
+  const double direction2 = dot(ray.direction, ray.direction);
+  for (const ParticleKernel& kernel : kernels) {
+    const Vector3d offset = kernel.center - ray.origin;
+    const double z = dot(offset, ray.direction) / direction2;
+    const double distance = length(offset - z * ray.direction);
+    const double reach = length(kernel.center - eye) + kernel.support_radius;
+    if (distance <= kernel.support_radius + 2 * stability_tolerance * reach) near.push_back(kernel);
+  }
+  return near;
+}
+
+struct Pixel {
+  RayColor color;
+  bool unstable = false;
+  std::uint64_t samples = 0, kernel_evaluations = 0;
+};
+
+/// The normal of the field, or none where the gradient is too small to have a direction.
+std::optional<Vector3d> normal_of(const FieldValue& field, double smallest_radius) {
+  const double steepness = length(field.gradient);
+  if (steepness == 0 || steepness * smallest_radius < 1e-6 * field.absolute) return std::nullopt;
+  return -field.gradient / steepness;
+}
+
+Pixel render_pixel(const Volume& volume, const ResolvedScene& scene, int px, int py) {
+  const Point3d eye = scene.camera.eye;
+  const double step_size = scene.step_size;
+  const double termination = scene.render.termination_opacity;
+  const Lighting& lighting = scene.render.lighting;
+  const CameraRay ray = camera_ray(scene.camera, scene.render.width, scene.render.height, px, py);
+  const double step_length = step_size * length(ray.direction);
+  const Vector3d view = -normalize(ray.direction);
+  const Vector3d light = lighting.direction ? normalize(*lighting.direction) : view;
+  std::vector<std::vector<ParticleKernel>> fields;
+  for (const auto& kernels : volume.fields) {
+    fields.push_back(kernels_near_ray(kernels, ray, eye));
+  }
+
+  Pixel pixel;
+  // From the last plane before the box, or the first of all, to the first one behind the box.
+  const double first = std::max(0., std::floor(volume.near / step_size - 0.5));
+  const double last = std::ceil(volume.far / step_size - 0.5);
+  for (double k = first; k <= last; ++k) {
+    const Point3d x = ray.origin + (k + 0.5) * step_size * ray.direction;
+    const double tolerance = stability_tolerance * length(x - eye);
+    if (distance_to_faces(volume.box, x) <= tolerance) pixel.unstable = true;
+    if (!volume.box.contains(x)) continue;
+    ++pixel.samples;
+
+    for (std::size_t f = 0; f < fields.size(); ++f) {
+      const FieldValue field = evaluate_field(fields[f], x);
+      if (field.boundary_distance <= tolerance) pixel.unstable = true;
+      pixel.kernel_evaluations += field.num_kernels;
+      Classified sample = classify(scene.transfer_functions[f], field.value);
+      if (lighting.enabled) {
+        sample = shade(sample, lighting, normal_of(field, volume.smallest_radius[f]), view, light);
+      }
+      composite(pixel.color, sample, step_length);
+    }
+
+    // An opacity of 1 is never exceeded, so that no ray stops there.
+    if (termination < 1 && std::abs(pixel.color.alpha - termination) <= stability_tolerance) {
+      pixel.unstable = true;
+    }
+    if (pixel.color.alpha > termination) break;
+  }
+  return pixel;
+}
+
+}  // namespace
+
+CameraRay camera_ray(const Camera& camera, int width, int height, int px, int py) {
+  const Vector3d forward = normalize(camera.target - camera.eye);
+  const Vector3d x = normalize(cross(forward, camera.up));
+  const Vector3d y = cross(x, forward);
+  const double half_height = camera.orthographic_height
+                                 ? *camera.orthographic_height / 2
+                                 : std::tan(camera.fov_degrees * std::numbers::pi / 180 / 2);
+  const double u = (2 * (px + 0.5) / width - 1) * half_height * width / height;
+  const double v = (1 - 2 * (py + 0.5) / height) * half_height;
+  if (camera.orthographic_height) return {camera.eye + (u * x + v * y), forward};
+  return {camera.eye, forward + u * x + v * y};
+}
+
+Bounds3d volume_box(const std::vector<std::vector<ParticleKernel>>& fields) {
+  Bounds3d centers;
+  double largest = 0;
+  for (const auto& kernels : fields) {
+    for (const ParticleKernel& kernel : kernels) {
+      centers.add(kernel.center);
+      largest = std::max(largest, kernel.support_radius);
+    }
+  }
+  return centers.empty() ? centers : centers.extended(largest);
+}
+
+Classified classify(const TransferFunction& transfer_function, double value) {
+  const auto& points = transfer_function.points;
+  const auto at = [](const TransferFunction::Point& p) {
+    return Classified{p.color.r, p.color.g, p.color.b, p.extinction};
+  };
+  // Clamped at both ends; below the first point also catches what has no logarithm.
+  if (value <= points.front().value) return at(points.front());
+  if (value >= points.back().value) return at(points.back());
+  std::size_t i = 1;
+  while (points[i].value < value) ++i;
+  const auto scale = [&](double v) { return transfer_function.log_scale ? std::log10(v) : v; };
+  const double low = scale(points[i - 1].value), high = scale(points[i].value);
+  const double t = (scale(value) - low) / (high - low);
+  const Classified a = at(points[i - 1]), b = at(points[i]);
+  return {a.red + t * (b.red - a.red), a.green + t * (b.green - a.green),
+          a.blue + t * (b.blue - a.blue), a.extinction + t * (b.extinction - a.extinction)};
+}
+
+Classified shade(const Classified& sample, const Lighting& lighting,
+                 const std::optional<Vector3d>& normal, const Vector3d& view,
+                 const Vector3d& light) {
+  double n_dot_l = 0, n_dot_h = 0;
+  if (normal) {
+    n_dot_l = dot(*normal, light);
+    // A light straight behind the sample has no halfway vector, and no highlight.
+    const Vector3d halfway = light + view;
+    if (length(halfway) > 0) n_dot_h = dot(*normal, normalize(halfway));
+  }
+  const double body = lighting.ambient + lighting.diffuse * std::abs(n_dot_l);
+  const double highlight = lighting.specular * std::pow(std::abs(n_dot_h), lighting.shininess);
+  return {sample.red * body + highlight, sample.green * body + highlight,
+          sample.blue * body + highlight, sample.extinction};
+}
+
+void composite(RayColor& ray, const Classified& sample, double step_length) {
+  const double alpha = 1 - std::exp(-sample.extinction * step_length);
+  const double visible = (1 - ray.alpha) * alpha;
+  ray.red += visible * sample.red;
+  ray.green += visible * sample.green;
+  ray.blue += visible * sample.blue;
+  ray.alpha += visible;
+}
+
+Image render(const ParticleSet& particles, const ResolvedScene& scene) {
+  assert(scene.step_size > 0);
+  assert(scene.fields.size() == scene.transfer_functions.size());
+  const Volume volume = make_volume(particles, scene);
+  const int width = scene.render.width, height = scene.render.height;
+  std::vector<Pixel> pixels(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pixels.size()), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i < range.end(); ++i) {
+      const auto pixel = static_cast<int>(i);
+      pixels[i] = render_pixel(volume, scene, pixel % width, pixel / width);
+    }
+  });
+
+  Image image;
+  image.width = width;
+  image.height = height;
+  for (const Pixel& pixel : pixels) {
+    const RayColor& c = pixel.color;
+    image.rgba.insert(image.rgba.end(), {c.red, c.green, c.blue, c.alpha});
+    image.unstable.push_back(pixel.unstable ? 1 : 0);
+    image.samples += pixel.samples;
+    image.kernel_evaluations += pixel.kernel_evaluations;
+  }
+  return image;
+}
+
+}  // namespace motes::reference

@@ -1,0 +1,68 @@
+// The picture, in double precision, one sample after the other, straight from docs/field.md. Every
+// engine is held against it. Slow: for small pictures of few particles.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/color.h"
+#include "core/vec.h"
+#include "particles/particle_set.h"
+#include "reference/field.h"
+#include "scene/camera.h"
+#include "scene/scene.h"
+
+namespace motes::reference {
+
+struct Image {
+  int width = 0, height = 0;
+  std::vector<double> rgba;  ///< linear, premultiplied, [height][width][4], rows from the top
+  /// One flag a pixel, [height][width]: 1 where rounding may change the picture visibly, since a
+  /// sample lies within 1e-5 of its distance from the eye to the support boundary of a selected
+  /// particle or to a face of the volume, or an opacity lies within 1e-5 of termination.
+  std::vector<unsigned char> unstable;
+  std::uint64_t samples = 0;  ///< classified, up to termination, whatever the number of fields
+  std::uint64_t kernel_evaluations =
+      0;  ///< pairs of such a sample and a particle whose support holds it
+};
+
+Image render(const ParticleSet& particles, const ResolvedScene& scene);
+
+// What it is made of, apart so that each can be checked by itself:
+
+/// x(z) = origin + z * direction, where z is the depth along the camera's view.
+struct CameraRay {
+  Point3d origin;
+  Vector3d direction;  ///< not normalised: its component along the view is 1
+};
+
+/// The ray through the middle of the pixel in column px from the left and row py from the top.
+CameraRay camera_ray(const Camera& camera, int width, int height, int px, int py);
+
+/// The box of all particles' centres of all fields, extended by the largest support radius.
+Bounds3d volume_box(const std::vector<std::vector<ParticleKernel>>& fields);
+
+struct Classified {
+  double red = 0, green = 0, blue = 0;  ///< linear, not premultiplied
+  double extinction = 0;                ///< per unit length
+};
+
+Classified classify(const TransferFunction& transfer_function, double value);
+
+/// Two-sided Phong. `view` and `light` are unit vectors from the sample towards eye and light;
+/// no normal: n.l = n.h = 0.
+Classified shade(const Classified& sample, const Lighting& lighting,
+                 const std::optional<Vector3d>& normal, const Vector3d& view,
+                 const Vector3d& light);
+
+/// Red, green, blue (premultiplied) and opacity of what a ray has met.
+struct RayColor {
+  double red = 0, green = 0, blue = 0, alpha = 0;
+};
+
+/// Listing 1 of Knoll et al. (2014): puts a sample that stands for `step_length` of the ray behind
+/// `ray`.
+void composite(RayColor& ray, const Classified& sample, double step_length);
+
+}  // namespace motes::reference

@@ -1,0 +1,192 @@
+#include "render/render_tile.h"
+
+#include <algorithm>
+#include <cmath>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "render/render_tile.cc"
+#include <hwy/foreach_target.h>
+// Included again for each instruction set.
+#include <hwy/highway.h>
+
+#include "field/coherent-inl.h"
+#include "field/direct-inl.h"
+#include "integrate/integrate-inl.h"
+#include "render/ray_packets.h"
+#include "samples/lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace motes {
+namespace HWY_NAMESPACE {
+
+/// Pass 1 for one slab, by the engine and with the channels of the frame.
+std::uint64_t sample_field(const FrameContext& context, const SamplingConstants& constants,
+                           const RayPacket& packet, const Slab& slab, SampleBuffer& buffer) {
+  const auto sample = [&]<bool kGradients, bool kAbsolute>() {
+    return context.engine == Engine::direct
+               ? sample_direct<kGradients, kAbsolute>(*context.kernels, constants, context.view,
+                                                      packet, slab, buffer)
+               : sample_coherent<kGradients, kAbsolute>(*context.kernels, constants, context.view,
+                                                        packet, slab, buffer);
+  };
+  if (context.gradients) {
+    return context.absolute ? sample.template operator()<true, true>()
+                            : sample.template operator()<true, false>();
+  }
+  return sample.template operator()<false, false>();
+}
+
+/// First and last sample of any ray of the packet; first > last: none.
+struct PacketRange {
+  SampleIndex first, last;
+};
+
+PacketRange live_range(const RayPacket& packet) {
+  PacketRange range{std::numeric_limits<SampleIndex>::max(), -1};
+  for (int l = 0; l < packet.lanes; ++l) {
+    if (packet.first[l] > packet.last[l]) continue;
+    range.first = std::min(range.first, packet.first[l]);
+    range.last = std::max(range.last, packet.last[l]);
+  }
+  return range;
+}
+
+/// The paper's multi-pass algorithm (section 4.2): slab by slab, sampling then integrating, until
+/// all rays of the packet have ended.
+TileCounts render_packet(const FrameContext& context, const SamplingConstants& constants,
+                         RayPacket& packet, SampleBuffer& buffer, PixelState& pixels) {
+  TileCounts counts;
+  PacketRange range = live_range(packet);
+  const RayPacket whole = packet;
+  for (SampleIndex k = range.first; k <= range.last; k += context.samples_per_pass) {
+    const SampleIndex rest = range.last - k + 1;
+    Slab slab{k, static_cast<int>(rest)};
+    if (context.samples_per_pass != 0) {
+      slab.count = static_cast<int>(std::min<SampleIndex>(rest, context.samples_per_pass));
+    }
+    buffer.reserve(slab.count);
+    counts.kernel_evaluations += sample_field(context, constants, packet, slab, buffer);
+    integrate(context.classifiers, context.shading, slab, buffer, packet, pixels);
+    buffer.clear();
+    if (context.samples_per_pass == 0) break;
+    range = live_range(packet);
+  }
+  for (int l = 0; l < packet.lanes; ++l) {
+    if (whole.first[l] <= whole.last[l]) {
+      counts.samples += static_cast<std::uint64_t>(packet.last[l] - packet.first[l] + 1);
+    }
+  }
+  return counts;
+}
+
+TileCounts render_tile(const FrameContext& context, const Tile& tile, Framebuffer& image) {
+  const int lanes = static_cast<int>(hn::Lanes(LaneTag()));
+  const int packet_width = lanes >= 8 ? 4 : 2, packet_height = lanes / packet_width;
+  const SamplingConstants constants = make_constants(*context.kernels);
+  const SampleLayout layout{.num_fields = static_cast<int>(context.classifiers.size()),
+                            .gradients = context.gradients,
+                            .absolute = context.absolute,
+                            .lanes = lanes};
+  SampleBuffer buffer(layout, std::max(1, context.samples_per_pass));
+  TileCounts counts;
+  for (int py = tile.y; py < tile.y + tile.height; py += packet_height) {
+    for (int px = tile.x; px < tile.x + tile.width; px += packet_width) {
+      RayPacket packet = make_ray_packet(context, px, py, packet_width, packet_height);
+      PixelState pixels{};
+      const TileCounts done = render_packet(context, constants, packet, buffer, pixels);
+      counts.samples += done.samples;
+      counts.kernel_evaluations += done.kernel_evaluations;
+      for (int l = 0; l < lanes; ++l) {
+        const int x = px + l % packet_width, y = py + l / packet_width;
+        if (x >= image.width || y >= image.height) continue;
+        float* const pixel = image.pixel(x, y);
+        pixel[0] = pixels.r[l];
+        pixel[1] = pixels.g[l];
+        pixel[2] = pixels.b[l];
+        pixel[3] = pixels.a[l];
+      }
+    }
+  }
+  return counts;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace motes
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+#include <fmt/format.h>
+
+#include <cstdlib>
+
+#include "core/error.h"
+
+namespace motes {
+namespace {
+
+HWY_EXPORT(render_tile);
+
+/// Targets of this program that the machine has, best first.
+std::vector<std::uint32_t> supported_targets() {
+  hwy::SetSupportedTargetsForTest(0);
+  std::vector<std::uint32_t> targets;
+  // Highway numbers better targets lower.
+  for (std::uint32_t bits = hwy::SupportedTargets() & HWY_TARGETS; bits != 0; bits &= bits - 1) {
+    targets.push_back(bits & (~bits + 1));
+  }
+  return targets;
+}
+
+void use_target(std::uint32_t target) {
+  hwy::SetSupportedTargetsForTest(target);
+  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+}
+
+/// The target in use; the first call reads MOTES_TARGET.
+std::uint32_t& current_target() {
+  static std::uint32_t target = 0;
+  return target;
+}
+
+void choose_target_once() {
+  static const bool done = [] {
+    const char* forced = std::getenv("MOTES_TARGET");
+    force_instruction_set(forced == nullptr ? "" : forced);
+    return true;
+  }();
+  (void)done;
+}
+
+}  // namespace
+
+std::vector<std::string> instruction_sets() {
+  std::vector<std::string> names;
+  for (const std::uint32_t target : supported_targets())
+    names.emplace_back(hwy::TargetName(target));
+  if (current_target() != 0) use_target(current_target());
+  return names;
+}
+
+void force_instruction_set(const std::string& name) {
+  const std::vector<std::uint32_t> targets = supported_targets();
+  const std::vector<std::string> names = instruction_sets();
+  const auto it = name.empty() ? names.begin() : std::find(names.begin(), names.end(), name);
+  if (it == names.end()) {
+    throw Error(fmt::format("MOTES_TARGET={}: not to be had on this machine, expected one of {}",
+                            printable(name), fmt::join(names, ", ")));
+  }
+  current_target() = targets[static_cast<std::size_t>(it - names.begin())];
+  use_target(current_target());
+}
+
+std::string instruction_set() {
+  choose_target_once();
+  return hwy::TargetName(current_target());
+}
+
+TileCounts render_tile(const FrameContext& context, const Tile& tile, Framebuffer& image) {
+  return HWY_DYNAMIC_DISPATCH(render_tile)(context, tile, image);
+}
+
+}  // namespace motes
+#endif

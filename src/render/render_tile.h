@@ -1,0 +1,56 @@
+// A tile of the image, rendered by the code for the instruction set in use: the one SIMD dispatch.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "field/kernel_set.h"
+#include "field/slab_frame.h"
+#include "image/framebuffer.h"
+#include "integrate/classifier.h"
+#include "integrate/shading.h"
+#include "samples/samples.h"
+#include "scene/scene.h"
+
+namespace motes {
+
+/// Everything that a frame's tiles share; made once a frame, then only read.
+struct FrameContext {
+  const KernelSet* kernels = nullptr;
+  View view;
+  bool orthographic = false;
+  double half_width = 0,
+         half_height = 0;     ///< of the image: tangents, or internal lengths if orthographic
+  int width = 0, height = 0;  ///< pixels
+  Bounds3d box;               ///< of the volume; internal lengths relative to kernels->origin
+  std::vector<Classifier> classifiers;  ///< one a field
+  ShadingConstants shading;
+  Engine engine = Engine::coherent;
+  bool gradients = false, absolute = false;  ///< channels of the samples
+  int samples_per_pass = 0;                  ///< planes of a slab; 0: the whole ray at once
+};
+
+/// Pixels x to x + width - 1, y to y + height - 1.
+struct Tile {
+  int x = 0, y = 0, width = 0, height = 0;
+};
+
+struct TileCounts {
+  std::uint64_t samples = 0;             ///< inside the volume's box, up to each ray's end
+  std::uint64_t kernel_evaluations = 0;  ///< carried out, those outside the support included
+};
+
+/// Renders `tile` into `image`. Hot: nothing is checked.
+TileCounts render_tile(const FrameContext& context, const Tile& tile, Framebuffer& image);
+
+/// Name of the instruction set that render_tile() uses: "AVX3", "AVX2", "SSE4". The environment
+/// variable MOTES_TARGET forces one. Throws Error if it names none that this machine has.
+std::string instruction_set();
+/// Names that MOTES_TARGET can take on this machine, best first.
+std::vector<std::string> instruction_sets();
+/// Forces the instruction set of that name from now on, as MOTES_TARGET does ("" for the best).
+/// Throws Error.
+void force_instruction_set(const std::string& name);
+
+}  // namespace motes

@@ -1,0 +1,139 @@
+#include "render/renderer.h"
+
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cassert>
+#include <chrono>
+#include <cmath>
+#include <mutex>
+#include <numbers>
+
+#include "render/render_tile.h"
+
+namespace motes {
+namespace {
+
+double milliseconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
+      .count();
+}
+
+/// World to internal: relative to the kernels' origin, scaled.
+Point3d to_internal(const KernelSet& kernels, const Point3d& p) {
+  const Vector3d v = kernels.length_scale * (p - kernels.origin);
+  return {v.x, v.y, v.z};
+}
+
+ShadingConstants make_shading(const ResolvedScene& scene, const CameraAxes& axes,
+                              const KernelSet& kernels) {
+  const Lighting& lighting = scene.render.lighting;
+  ShadingConstants shading;
+  shading.termination_opacity = static_cast<float>(scene.render.termination_opacity);
+  shading.ambient = static_cast<float>(lighting.ambient);
+  shading.diffuse = static_cast<float>(lighting.diffuse);
+  shading.specular = static_cast<float>(lighting.specular);
+  shading.shininess = static_cast<float>(lighting.shininess);
+  shading.headlight = !lighting.direction.has_value();
+  if (lighting.direction) {
+    const Vector3d l = normalize(*lighting.direction);
+    const Vector3d rows[3] = {axes.x, axes.y, axes.forward};
+    for (int i = 0; i < 3; ++i) shading.light[i] = static_cast<float>(dot(l, rows[i]));
+  }
+  for (const FieldKernels& field : kernels.fields) shading.min_radius.push_back(field.min_radius);
+  return shading;
+}
+
+FrameContext make_context(const KernelSet& kernels, const ResolvedScene& scene,
+                          const RenderOptions& options) {
+  const CameraAxes axes = camera_axes(scene.camera);
+  FrameContext context;
+  context.kernels = &kernels;
+  context.view = {axes, to_internal(kernels, scene.camera.eye),
+                  scene.step_size * kernels.length_scale};
+  context.width = scene.render.width;
+  context.height = scene.render.height;
+  context.orthographic = scene.camera.orthographic_height.has_value();
+  context.half_height = context.orthographic
+                            ? 0.5 * *scene.camera.orthographic_height * kernels.length_scale
+                            : std::tan(0.5 * scene.camera.fov_degrees * std::numbers::pi / 180);
+  context.half_width = context.half_height * context.width / context.height;
+  const Bounds3d box = kernels.box();
+  context.box = {to_internal(kernels, box.min), to_internal(kernels, box.max)};
+  for (std::size_t f = 0; f < kernels.fields.size(); ++f) {
+    context.classifiers.push_back(compile_transfer_function(
+        scene.transfer_functions[f], kernels.fields[f].value_scale, scene.step_size));
+    context.absolute = context.absolute || kernels.fields[f].mixed_signs;
+  }
+  context.shading = make_shading(scene, axes, kernels);
+  context.engine = scene.render.engine;
+  context.gradients = scene.render.lighting.enabled;
+  context.absolute = context.absolute && context.gradients;
+  const int num_fields = static_cast<int>(kernels.fields.size());
+  context.samples_per_pass =
+      options.samples_per_pass.value_or(num_fields == 1 ? 32 : std::max(1, 64 / num_fields));
+  return context;
+}
+
+constexpr int tile_size = 32;
+
+}  // namespace
+
+Renderer::Renderer(const ParticleSet& particles, const std::vector<FieldSource>& fields) {
+  const auto start = std::chrono::steady_clock::now();
+  kernels_ = build_kernel_set(particles, fields);
+  build_ms_ = milliseconds_since(start);
+}
+
+void Renderer::set_kernel(std::size_t field, const Kernel& kernel) {
+  assert(field < kernels_.fields.size());
+  kernels_.fields[field].kernel = kernel;
+}
+
+Framebuffer Renderer::render(const ResolvedScene& scene, const RenderOptions& options,
+                             RenderStatistics* statistics) const {
+  assert(scene.transfer_functions.size() == kernels_.fields.size());
+  assert(scene.step_size > 0);
+  const std::string target = instruction_set();
+  const auto start = std::chrono::steady_clock::now();
+  Framebuffer image(scene.render.width, scene.render.height);
+  const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
+  std::atomic<std::uint64_t> samples{0}, evaluations{0};
+  if (kernels_.size() != 0) {
+    const FrameContext context = make_context(kernels_, scene, options);
+    const int columns = (context.width + tile_size - 1) / tile_size;
+    const int rows = (context.height + tile_size - 1) / tile_size;
+    std::atomic<int> done{0};
+    std::mutex progress_mutex;
+    tbb::task_arena arena(threads);
+    arena.execute([&] {
+      tbb::parallel_for(0, columns * rows, [&](int i) {
+        const int x = i % columns * tile_size, y = i / columns * tile_size;
+        const Tile tile{x, y, std::min(tile_size, context.width - x),
+                        std::min(tile_size, context.height - y)};
+        const TileCounts counts = render_tile(context, tile, image);
+        samples += counts.samples;
+        evaluations += counts.kernel_evaluations;
+        const int finished = ++done;
+        if (options.progress != nullptr) {
+          const std::lock_guard lock(progress_mutex);
+          options.progress->update("rendering", static_cast<double>(finished) / (columns * rows));
+        }
+      });
+    });
+  }
+  if (statistics != nullptr) {
+    *statistics = {milliseconds_since(start),
+                   samples,
+                   evaluations,
+                   threads,
+                   scene.render.engine == Engine::direct ? "direct" : "coherent",
+                   target};
+  }
+  return image;
+}
+
+}  // namespace motes

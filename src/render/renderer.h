@@ -1,0 +1,55 @@
+// The renderer: fields of particles with their tree, ready to be looked at from anywhere.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/report.h"
+#include "field/kernel_set.h"
+#include "image/framebuffer.h"
+#include "particles/particle_set.h"
+#include "scene/scene.h"
+
+namespace motes {
+
+struct RenderOptions {
+  int threads = 0;  ///< 0: all of the machine's
+  /// Planes of samples of one pass over the tree (paper, section 4.2); 0: the whole ray in one
+  /// pass; nullopt: 32 for one field, 64 / M for M fields.
+  std::optional<int> samples_per_pass;
+  Progress* progress = nullptr;
+};
+
+struct RenderStatistics {
+  double frame_ms = 0;
+  std::uint64_t samples = 0;             ///< inside the volume's box, up to each ray's end
+  std::uint64_t kernel_evaluations = 0;  ///< carried out, those outside the support included
+  int threads = 0;
+  std::string engine, instruction_set;
+};
+
+class Renderer {
+ public:
+  /// Gathers the fields' kernels and builds the tree; needs neither argument afterwards.
+  Renderer(const ParticleSet& particles, const std::vector<FieldSource>& fields);
+
+  /// The picture: linear, premultiplied. The scene's transfer functions are one a field of the
+  /// constructor's; its `fields` are not looked at, so kernel_scale and support_factor come from
+  /// `kernels`. Throws Error for a camera that looks nowhere.
+  Framebuffer render(const ResolvedScene& scene, const RenderOptions& options,
+                     RenderStatistics* statistics = nullptr) const;
+
+  /// Changes sigma and kappa of a field; the tree stays.
+  void set_kernel(std::size_t field, const Kernel& kernel);
+
+  const KernelSet& kernels() const { return kernels_; }
+  double build_ms() const { return build_ms_; }
+
+ private:
+  KernelSet kernels_;
+  double build_ms_ = 0;
+};
+
+}  // namespace motes
