@@ -11,8 +11,9 @@ struct Camera {
   Point3d eye{0, 0, 0};
   Point3d target{0, 0, -1};
   Vector3d up{0, 1, 0};
-  double fov_degrees = 45;                    ///< vertical, in (0, 180)
-  std::optional<double> orthographic_height;  ///< set: parallel rays, this height of the image in length units
+  double fov_degrees = 45;  ///< vertical, in (0, 180)
+  std::optional<double>
+      orthographic_height;  ///< set: parallel rays, this height of the image in length units
 
   bool operator==(const Camera&) const = default;
 };

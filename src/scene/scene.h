@@ -76,6 +76,9 @@ struct Lighting {
 };
 
 enum class Engine { sweep, coherent, direct };
+/// Throws Error for an unknown name.
+Engine engine_from_name(std::string_view name);
+std::string_view name_of(Engine engine);
 
 struct RenderSettings {
   int width = 1024, height = 1024;
@@ -131,6 +134,11 @@ struct ResolvedScene {
 Scene read_scene(const std::filesystem::path& path);
 /// The same from text; `path` is for messages and for relative paths.
 Scene parse_scene(std::string_view json, const std::filesystem::path& path);
+/// Whether `path` is a scene file, by its content or its name, and not a file of particles.
+bool is_scene_file(const std::filesystem::path& path);
+/// Reads what a field's "transfer_function" may be from a file of its own. Throws Error.
+std::variant<std::monostate, TransferFunction, NamedTransferFunction> read_transfer_function(
+    const std::filesystem::path& path);
 /// Scene as JSON that read_scene() reads back to an equal Scene; data_path relative to `directory`.
 std::string scene_to_json(const Scene& scene, const std::filesystem::path& directory);
 

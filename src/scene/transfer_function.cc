@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <cstdint>
 
@@ -71,6 +72,14 @@ Color color_from_srgb(std::uint32_t rrggbb) {
     return static_cast<float>(srgb_to_linear(((rrggbb >> shift) & 0xff) / 255.0));
   };
   return {channel(16), channel(8), channel(0)};
+}
+
+std::optional<Color> color_from_text(std::string_view text) {
+  if (text.size() != 7 || text[0] != '#') return std::nullopt;
+  std::uint32_t srgb = 0;
+  const auto [end, error] = std::from_chars(text.data() + 1, text.data() + 7, srgb, 16);
+  if (error != std::errc{} || end != text.data() + 7) return std::nullopt;
+  return color_from_srgb(srgb);
 }
 
 TransferFunction named_transfer_function(std::string_view name, double low, double high,

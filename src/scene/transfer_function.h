@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -30,6 +31,9 @@ const std::vector<std::string>& color_map_names();
 
 /// 0xrrggbb, sRGB-encoded, as a linear colour.
 Color color_from_srgb(std::uint32_t rrggbb);
+
+/// "#rrggbb" as a linear colour; nullopt for any other text.
+std::optional<Color> color_from_text(std::string_view text);
 
 /// A built-in colour map over [low, high], extinction rising linearly from 0 to `extinction`.
 /// Throws Error for an unknown name (naming the nearest) or a range that is empty, or not positive

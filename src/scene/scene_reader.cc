@@ -1,0 +1,336 @@
+// Scene files in: JSON -> Scene, every value checked (docs/scene.md).
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <set>
+
+#include "core/error.h"
+#include "particles/selection.h"
+#include "scene/checked_json.h"
+#include "scene/scene.h"
+
+namespace motes {
+namespace {
+
+using nlohmann::json;
+using Value = CheckedJson;
+
+constexpr int max_image_side = 16384;
+constexpr std::size_t max_points = 65536;
+
+/// "linear" or "log".
+bool read_scale(const Value& value) {
+  const std::string scale = value.text("\"linear\" or \"log\"");
+  if (scale != "linear" && scale != "log") value.expected("\"linear\" or \"log\"");
+  return scale == "log";
+}
+
+std::string read_map_name(const Value& value) {
+  const std::string name = value.text("the name of a colour map");
+  std::vector<std::string> names = color_map_names();
+  names.emplace_back(species_colors);
+  if (std::find(names.begin(), names.end(), name) == names.end()) {
+    value.fail(unknown_name("colour map", name, names).what());
+  }
+  return name;
+}
+
+NamedTransferFunction read_named_transfer_function(const Value& value) {
+  value.check_keys({"name", "range", "extinction", "scale"});
+  NamedTransferFunction named;
+  named.name = read_map_name(value.at("name"));
+  value.with("scale", [&](const Value& v) { named.log_scale = read_scale(v); });
+  value.with("extinction", [&](const Value& v) { named.extinction = v.number_from_zero(); });
+  value.with("range", [&](const Value& v) {
+    const auto ends = v.array_of(2, "an array of two numbers, low and high");
+    named.range = {ends[0].number(), ends[1].number()};
+    if (!(named.range->first < named.range->second)) v.fail("expected low < high");
+    if (named.log_scale.value_or(false) && !(named.range->first > 0)) {
+      ends[0].expected("a number greater than 0, as the scale is logarithmic");
+    }
+  });
+  return named;
+}
+
+TransferFunction read_points(const Value& value) {
+  value.check_keys({"points", "scale"});
+  TransferFunction function;
+  value.with("scale", [&](const Value& v) { function.log_scale = read_scale(v); });
+  const Value points = value.at("points");
+  const auto items = points.array("an array of points");
+  if (items.empty() || items.size() > max_points) {
+    points.expected(fmt::format("an array of 1 to {} points", max_points));
+  }
+  for (const Value& item : items) {
+    item.check_keys({"value", "color", "extinction"});
+    TransferFunction::Point point;
+    point.value = item.at("value").number();
+    point.color = item.at("color").color();
+    point.extinction = item.at("extinction").number_from_zero();
+    if (function.log_scale && !(point.value > 0)) {
+      item.at("value").expected("a number greater than 0, as the scale is logarithmic");
+    }
+    if (!function.points.empty() && !(point.value > function.points.back().value)) {
+      item.at("value").expected(fmt::format("a number greater than the point's before, {}",
+                                            function.points.back().value));
+    }
+    function.points.push_back(point);
+  }
+  return function;
+}
+
+decltype(Field::transfer_function) read_transfer_function(const Value& value) {
+  if (value.raw().is_string()) {
+    NamedTransferFunction named;
+    named.name = read_map_name(value);
+    return named;
+  }
+  if (value.raw().is_object() && value.has("name")) return read_named_transfer_function(value);
+  if (value.raw().is_object() && value.has("points")) return read_points(value);
+  if (!value.raw().is_object()) {
+    value.expected("an object with \"points\" or \"name\", or the name of a colour map");
+  }
+  value.check_keys({"points", "name", "range", "extinction", "scale"});
+  value.expected("the key \"points\" or \"name\"");
+}
+
+Selection read_selection(const Value& value) {
+  value.check_keys({"species", "index", "expression"});
+  Selection select;
+  value.with("species", [&](const Value& v) {
+    if (v.raw().is_string()) {
+      select.species = {v.text("the name of a species")};
+      return;
+    }
+    const auto items = v.array("an array of names");
+    if (items.empty()) v.expected("an array of at least one name");
+    for (const Value& item : items) select.species.push_back(item.text("the name of a species"));
+  });
+  value.with("index", [&](const Value& v) {
+    const auto ends = v.array_of(2, "an array of two whole numbers, first and last");
+    constexpr auto most = std::numeric_limits<std::uint64_t>::max();
+    select.index = {ends[0].integer(0, most), ends[1].integer(0, most)};
+    if (select.index->first > select.index->second) v.fail("expected first <= last");
+  });
+  value.with("expression", [&](const Value& v) {
+    select.expression = v.text("an expression over properties");
+    try {
+      check_expression(select.expression);
+    } catch (const Error& error) {
+      v.fail(error.what());
+    }
+  });
+  return select;
+}
+
+NumberOrProperty read_number_or_property(const Value& value, bool positive) {
+  const char* what = positive ? "a number greater than 0 or the name of a property"
+                              : "a number or the name of a property";
+  if (value.raw().is_string()) return value.text(what);
+  if (!value.raw().is_number()) value.expected(what);
+  const double number = value.number();
+  // Kernels are evaluated in single precision, so it must be neither 0 nor infinite there.
+  const float single = static_cast<float>(number);
+  if (!std::isfinite(single) || (positive && !(single > 0))) value.expected(what);
+  return number;
+}
+
+void read_support(const Value& value, std::optional<double>& support_factor,
+                  std::optional<double>& kernel_scale) {
+  value.with("support_factor", [&](const Value& v) { support_factor = v.number_above(0); });
+  value.with("kernel_scale", [&](const Value& v) { kernel_scale = v.number(); });
+  value.with("type", [](const Value& v) {
+    if (v.text("\"gaussian\"") != "gaussian") v.expected("\"gaussian\"");
+  });
+}
+
+Field read_field(const Value& value) {
+  value.check_keys(
+      {"name", "select", "radius", "weight", "normalise", "kernel", "transfer_function"});
+  Field field;
+  value.with("name", [&](const Value& v) { field.name = v.text("a name"); });
+  value.with("select", [&](const Value& v) { field.select = read_selection(v); });
+  value.with("radius", [&](const Value& v) { field.radius = read_number_or_property(v, true); });
+  value.with("weight", [&](const Value& v) { field.weight = read_number_or_property(v, false); });
+  value.with("normalise", [&](const Value& v) { field.normalise = v.boolean(); });
+  value.with("kernel", [&](const Value& v) {
+    v.check_keys({"type", "support_factor", "kernel_scale"});
+    read_support(v, field.support_factor, field.kernel_scale);
+  });
+  value.with("transfer_function",
+             [&](const Value& v) { field.transfer_function = read_transfer_function(v); });
+  return field;
+}
+
+void read_fields(const Value& value, Scene& scene) {
+  const auto items = value.array("an array of fields");
+  if (items.size() > max_fields) {
+    value.expected(fmt::format("an array of at most {} fields", max_fields));
+  }
+  std::set<std::string> names;
+  for (const Value& item : items) {
+    scene.fields.push_back(read_field(item));
+    const std::string& name = scene.fields.back().name;
+    if (!name.empty() && !names.insert(name).second) {
+      item.at("name").expected("a name that no other field has");
+    }
+  }
+}
+
+void read_data(const Value& value, const std::filesystem::path& directory, Scene& scene) {
+  value.check_keys({"path", "frame", "types"});
+  const std::filesystem::path path = value.at("path").text("the path of a file");
+  scene.data_path = (directory / path).lexically_normal();
+  value.with("frame", [&](const Value& v) {
+    scene.frame = v.integer(0, std::numeric_limits<std::uint64_t>::max());
+  });
+  value.with("types", [&](const Value& types) {
+    if (!types.raw().is_object()) types.expected("an object such as {\"1\": \"Si\"}");
+    for (const auto& item : types.raw().items()) {
+      const std::string& number = item.key();
+      int type = 0;
+      const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), type);
+      if (error != std::errc{} || end != number.data() + number.size() || type < 0 ||
+          number != std::to_string(type)) {
+        types.fail(fmt::format("expected whole numbers as keys, found '{}'", printable(number)));
+      }
+      const Value name(item.value(), fmt::format("{}.{}", types.key(), number));
+      scene.types[type] = name.text("the name of a species");
+    }
+  });
+}
+
+void read_camera(const Value& value, Scene& scene) {
+  value.check_keys({"eye", "target", "up", "fov", "orthographic"});
+  value.with("eye", [&](const Value& v) { scene.eye = Point3d(v.vector()); });
+  value.with("target", [&](const Value& v) { scene.target = Point3d(v.vector()); });
+  value.with("up", [&](const Value& v) {
+    scene.up = v.vector();
+    if (!(length(*scene.up) > 0)) v.expected("a vector that is not zero");
+  });
+  value.with("fov", [&](const Value& v) {
+    constexpr const char* what = "an angle in degrees greater than 0 and less than 180";
+    if (!v.raw().is_number() || !(v.number() > 0 && v.number() < 180)) v.expected(what);
+    scene.fov_degrees = v.number();
+  });
+  value.with("orthographic",
+             [&](const Value& v) { scene.orthographic_height = v.number_above(0); });
+  if (scene.fov_degrees && scene.orthographic_height) {
+    value.fail("expected either fov or orthographic, found both");
+  }
+  if (scene.eye && scene.target && *scene.eye == *scene.target) {
+    value.fail("expected two different points as eye and target");
+  }
+}
+
+void read_kernel(const Value& value, Scene& scene) {
+  value.check_keys({"type", "support_factor", "kernel_scale"});
+  std::optional<double> support_factor, kernel_scale;
+  read_support(value, support_factor, kernel_scale);
+  scene.kernel.support_factor = support_factor.value_or(scene.kernel.support_factor);
+  scene.kernel.kernel_scale = kernel_scale.value_or(scene.kernel.kernel_scale);
+}
+
+Lighting read_lighting(const Value& value) {
+  Lighting lighting;
+  value.check_keys({"enabled", "ambient", "diffuse", "specular", "shininess", "direction"});
+  value.with("enabled", [&](const Value& v) { lighting.enabled = v.boolean(); });
+  value.with("ambient", [&](const Value& v) { lighting.ambient = v.number_from_zero(); });
+  value.with("diffuse", [&](const Value& v) { lighting.diffuse = v.number_from_zero(); });
+  value.with("specular", [&](const Value& v) { lighting.specular = v.number_from_zero(); });
+  value.with("shininess", [&](const Value& v) { lighting.shininess = v.number_from_zero(); });
+  value.with("direction", [&](const Value& v) {
+    lighting.direction = v.vector();
+    if (!(length(*lighting.direction) > 0)) v.expected("a vector that is not zero");
+  });
+  return lighting;
+}
+
+void read_render(const Value& value, RenderSettings& render) {
+  value.check_keys(
+      {"size", "step_size", "termination_opacity", "lighting", "background", "engine"});
+  value.with("size", [&](const Value& v) {
+    const auto sides = v.array_of(2, "an array of two whole numbers, width and height");
+    render.width = static_cast<int>(sides[0].integer(1, max_image_side));
+    render.height = static_cast<int>(sides[1].integer(1, max_image_side));
+  });
+  value.with("step_size", [&](const Value& v) { render.step_size = v.number_above(0); });
+  value.with("termination_opacity", [&](const Value& v) {
+    if (!v.raw().is_number() || !(v.number() > 0 && v.number() <= 1)) {
+      v.expected("a number greater than 0 and not more than 1");
+    }
+    render.termination_opacity = v.number();
+  });
+  value.with("lighting", [&](const Value& v) { render.lighting = read_lighting(v); });
+  value.with("background", [&](const Value& v) { render.background = v.color(); });
+  value.with("engine", [&](const Value& v) {
+    try {
+      render.engine = engine_from_name(v.text("the name of an engine"));
+    } catch (const Error& error) {
+      v.fail(error.what());
+    }
+  });
+}
+
+Scene read_root(const json& root, const std::filesystem::path& directory) {
+  const Value value(root, "");
+  value.check_keys({"version", "data", "camera", "kernel", "fields", "render"});
+  const Value version = value.at("version");
+  if (version.raw() != json(1)) version.expected("1, the only version there is");
+  Scene scene;
+  read_data(value.at("data"), directory, scene);
+  value.with("camera", [&](const Value& v) { read_camera(v, scene); });
+  value.with("kernel", [&](const Value& v) { read_kernel(v, scene); });
+  value.with("fields", [&](const Value& v) { read_fields(v, scene); });
+  value.with("render", [&](const Value& v) { read_render(v, scene.render); });
+  return scene;
+}
+
+}  // namespace
+
+Engine engine_from_name(std::string_view name) {
+  if (name == "sweep") return Engine::sweep;
+  if (name == "coherent") return Engine::coherent;
+  if (name == "direct") return Engine::direct;
+  if (name == "cells") {
+    throw Error("the engine 'cells' is not built yet; expected sweep, coherent or direct");
+  }
+  throw unknown_name("engine", name, {"sweep", "coherent", "direct"});
+}
+
+Scene parse_scene(std::string_view text, const std::filesystem::path& path) {
+  const json root = parse_json(text, path);
+  try {
+    return read_root(root, path.parent_path());
+  } catch (const Error& error) {
+    throw Error(path, error.what());
+  }
+}
+
+Scene read_scene(const std::filesystem::path& path) { return parse_scene(read_text(path), path); }
+
+decltype(Field::transfer_function) read_transfer_function(const std::filesystem::path& path) {
+  const json root = parse_json(read_text(path), path);
+  try {
+    return read_transfer_function(Value(root, ""));
+  } catch (const Error& error) {
+    throw Error(path, error.what());
+  }
+}
+
+bool is_scene_file(const std::filesystem::path& path) {
+  if (path.extension() == ".json") return true;
+  std::ifstream stream(path, std::ios::binary);
+  std::string head(65536, '\0');
+  stream.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(stream.gcount()));
+  const auto start = head.find_first_not_of("\xef\xbb\xbf \t\r\n");
+  return start != std::string::npos && head[start] == '{' &&
+         head.find("\"version\"") != std::string::npos;
+}
+
+}  // namespace motes

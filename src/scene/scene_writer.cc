@@ -1,0 +1,173 @@
+// Scene files out: Scene -> JSON that reads back to an equal Scene.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "core/error.h"
+#include "scene/scene.h"
+
+namespace motes {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+json vector_to_json(double x, double y, double z) { return json::array({x, y, z}); }
+
+/// "#rrggbb" where that is exactly the colour, else three linear numbers.
+json color_to_json(const Color& color) {
+  const auto level = [](float channel) {
+    return static_cast<std::uint32_t>(
+        std::lround(255 * linear_to_srgb(std::clamp(static_cast<double>(channel), 0.0, 1.0))));
+  };
+  const std::uint32_t srgb = level(color.r) << 16 | level(color.g) << 8 | level(color.b);
+  if (color_from_srgb(srgb) == color) return fmt::format("#{:06x}", srgb);
+  return vector_to_json(color.r, color.g, color.b);
+}
+
+json number_or_property_to_json(const NumberOrProperty& value) {
+  return std::visit([](const auto& v) { return json(v); }, value);
+}
+
+json to_json(const std::monostate&) { return nullptr; }
+
+json to_json(const TransferFunction& function) {
+  json points = json::array();
+  for (const TransferFunction::Point& point : function.points) {
+    points.push_back({{"value", point.value},
+                      {"color", color_to_json(point.color)},
+                      {"extinction", point.extinction}});
+  }
+  json out;
+  if (function.log_scale) out["scale"] = "log";
+  out["points"] = std::move(points);
+  return out;
+}
+
+json to_json(const NamedTransferFunction& named) {
+  json out{{"name", named.name}};
+  if (named.range) out["range"] = {named.range->first, named.range->second};
+  if (named.extinction) out["extinction"] = *named.extinction;
+  if (named.log_scale) out["scale"] = *named.log_scale ? "log" : "linear";
+  return out;
+}
+
+json to_json(const Selection& select) {
+  json out = json::object();
+  if (!select.species.empty()) out["species"] = select.species;
+  if (select.index) out["index"] = {select.index->first, select.index->second};
+  if (!select.expression.empty()) out["expression"] = select.expression;
+  return out;
+}
+
+json to_json(const Field& field) {
+  json out = json::object();
+  if (!field.name.empty()) out["name"] = field.name;
+  if (field.select != Selection{}) out["select"] = to_json(field.select);
+  if (field.radius) out["radius"] = number_or_property_to_json(*field.radius);
+  if (field.weight) out["weight"] = number_or_property_to_json(*field.weight);
+  if (field.normalise) out["normalise"] = *field.normalise;
+  if (field.support_factor) out["kernel"]["support_factor"] = *field.support_factor;
+  if (field.kernel_scale) out["kernel"]["kernel_scale"] = *field.kernel_scale;
+  if (!std::holds_alternative<std::monostate>(field.transfer_function)) {
+    out["transfer_function"] =
+        std::visit([](const auto& f) { return to_json(f); }, field.transfer_function);
+  }
+  return out;
+}
+
+json to_json(const RenderSettings& render) {
+  const Lighting& lighting = render.lighting;
+  json out{{"size", {render.width, render.height}}};
+  if (render.step_size) out["step_size"] = *render.step_size;
+  out["termination_opacity"] = render.termination_opacity;
+  out["lighting"] = {{"enabled", lighting.enabled},
+                     {"ambient", lighting.ambient},
+                     {"diffuse", lighting.diffuse},
+                     {"specular", lighting.specular},
+                     {"shininess", lighting.shininess}};
+  if (const auto& d = lighting.direction) {
+    out["lighting"]["direction"] = vector_to_json(d->x, d->y, d->z);
+  }
+  out["background"] = color_to_json(render.background);
+  out["engine"] = name_of(render.engine);
+  return out;
+}
+
+json data_to_json(const Scene& scene, const std::filesystem::path& directory) {
+  namespace fs = std::filesystem;
+  const fs::path relative = scene.data_path.lexically_relative(directory);
+  json out{{"path", (relative.empty() ? fs::absolute(scene.data_path) : relative).string()},
+           {"frame", scene.frame}};
+  for (const auto& [number, name] : scene.types) out["types"][std::to_string(number)] = name;
+  return out;
+}
+
+json camera_to_json(const Scene& scene) {
+  json out = json::object();
+  if (const auto& p = scene.eye) out["eye"] = vector_to_json(p->x, p->y, p->z);
+  if (const auto& p = scene.target) out["target"] = vector_to_json(p->x, p->y, p->z);
+  if (const auto& v = scene.up) out["up"] = vector_to_json(v->x, v->y, v->z);
+  if (scene.fov_degrees) out["fov"] = *scene.fov_degrees;
+  if (scene.orthographic_height) out["orthographic"] = *scene.orthographic_height;
+  return out;
+}
+
+/// As json::dump() with an indent of two, but arrays and objects without others inside stay on one
+/// line.
+void print(const json& value, const std::string& indent, std::string& out) {
+  const bool flat = std::none_of(value.begin(), value.end(),
+                                 [](const json& item) { return item.is_structured(); });
+  if (!value.is_structured() || value.empty() || (flat && value.is_array())) {
+    out += value.dump();
+    return;
+  }
+  const std::string inner = indent + "  ";
+  out += value.is_array() ? "[" : "{";
+  const char* separator = "\n";
+  for (const auto& item : value.items()) {
+    out += separator + inner;
+    if (value.is_object()) out += json(item.key()).dump() + ": ";
+    print(item.value(), inner, out);
+    separator = ",\n";
+  }
+  out += "\n" + indent + (value.is_array() ? "]" : "}");
+}
+
+}  // namespace
+
+std::string_view name_of(Engine engine) {
+  switch (engine) {
+    case Engine::sweep:
+      return "sweep";
+    case Engine::coherent:
+      return "coherent";
+    case Engine::direct:
+      return "direct";
+  }
+  return "";
+}
+
+std::string scene_to_json(const Scene& scene, const std::filesystem::path& directory) {
+  json root{{"version", 1}, {"data", data_to_json(scene, directory)}};
+  const json camera = camera_to_json(scene);
+  if (!camera.empty()) root["camera"] = camera;
+  root["kernel"] = {{"type", "gaussian"},
+                    {"support_factor", scene.kernel.support_factor},
+                    {"kernel_scale", scene.kernel.kernel_scale}};
+  if (!scene.fields.empty()) {
+    root["fields"] = json::array();
+    for (const Field& field : scene.fields) root["fields"].push_back(to_json(field));
+  }
+  root["render"] = to_json(scene.render);
+  try {
+    std::string out;
+    print(root, "", out);
+    return out + "\n";
+  } catch (const json::type_error&) {
+    throw Error("the scene has a name or path that is not UTF-8, which JSON cannot hold");
+  }
+}
+
+}  // namespace motes

@@ -1,0 +1,342 @@
+// Scene files: what the documentation's example means, every refusal, and that writing and reading
+// agree.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <cmath>
+
+#include "core/error.h"
+#include "scene/scene.h"
+
+namespace motes {
+namespace {
+
+using testing::HasSubstr;
+
+Scene parse(const std::string& text) { return parse_scene(text, "dir/s.json"); }
+
+std::string message_of(const std::string& text) {
+  try {
+    parse(text);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+/// A scene with `body` beside what every scene must have.
+std::string with_body(const std::string& body) {
+  return R"({"version": 1, "data": {"path": "a.xyz"}, )" + body + "}";
+}
+
+TEST(ParseScene, ReadsEverything) {
+  const Scene scene = parse(R"({
+    "version": 1,
+    "data": {"path": "../silica.lammpstrj", "frame": 3, "types": {"1": "Si", "2": "O"}},
+    "camera": {"eye": [0, 0, -80], "target": [0, 0, 0.5], "up": [0, 1, 0], "fov": 30},
+    "kernel": {"type": "gaussian", "support_factor": 2.5, "kernel_scale": -1},
+    "fields": [
+      {"name": "silicon",
+       "select": {"species": ["Si"], "index": [5, 10], "expression": "z > 3"},
+       "radius": 1.11, "weight": "q", "normalise": true,
+       "kernel": {"support_factor": 3},
+       "transfer_function": {"scale": "log", "points": [
+         {"value": 0.2, "color": "#000033", "extinction": 0.0},
+         {"value": 1.2, "color": [1.0, 0.6, 0.1], "extinction": 2.0}]}},
+      {"radius": "h", "transfer_function": {"name": "magma", "range": [1, 2], "extinction": 4}},
+      {"transfer_function": "species"}],
+    "render": {"size": [640, 480], "step_size": 0.5, "termination_opacity": 0.99,
+      "lighting": {"enabled": false, "ambient": 0.1, "diffuse": 0.2, "specular": 0.4,
+                   "shininess": 8, "direction": [1, 2, 3]},
+      "background": "#ffffff", "engine": "direct"}})");
+
+  EXPECT_EQ(scene.data_path, "silica.lammpstrj");
+  EXPECT_EQ(scene.frame, 3u);
+  EXPECT_EQ(scene.types, (std::map<int, std::string>{{1, "Si"}, {2, "O"}}));
+  EXPECT_EQ(scene.eye, (Point3d{0, 0, -80}));
+  EXPECT_EQ(scene.target, (Point3d{0, 0, 0.5}));
+  EXPECT_EQ(scene.fov_degrees, 30);
+  EXPECT_EQ(scene.kernel, (Kernel{2.5, -1}));
+  ASSERT_EQ(scene.fields.size(), 3u);
+  const Field& silicon = scene.fields[0];
+  EXPECT_EQ(silicon.select, (Selection{{"Si"}, {{5, 10}}, "z > 3"}));
+  EXPECT_EQ(silicon.radius, NumberOrProperty(1.11));
+  EXPECT_EQ(silicon.weight, NumberOrProperty("q"));
+  EXPECT_EQ(silicon.normalise, true);
+  EXPECT_EQ(silicon.support_factor, 3);
+  EXPECT_EQ(silicon.kernel_scale, std::nullopt);
+  const auto& points = std::get<TransferFunction>(silicon.transfer_function);
+  EXPECT_TRUE(points.log_scale);
+  ASSERT_EQ(points.points.size(), 2u);
+  EXPECT_NEAR(points.points[0].color.b, srgb_to_linear(0.2), 1e-7);
+  EXPECT_EQ(points.points[1].color, (Color{1, 0.6f, 0.1f}));
+  EXPECT_EQ(points.points[1].extinction, 2);
+  EXPECT_EQ(std::get<NamedTransferFunction>(scene.fields[1].transfer_function),
+            (NamedTransferFunction{"magma", {{1, 2}}, 4, {}}));
+  EXPECT_EQ(std::get<NamedTransferFunction>(scene.fields[2].transfer_function).name, "species");
+  EXPECT_EQ(scene.render.width, 640);
+  EXPECT_EQ(scene.render.height, 480);
+  EXPECT_EQ(scene.render.step_size, 0.5);
+  EXPECT_EQ(scene.render.termination_opacity, 0.99);
+  EXPECT_EQ(scene.render.lighting, (Lighting{false, 0.1, 0.2, 0.4, 8, Vector3d{1, 2, 3}}));
+  EXPECT_EQ(scene.render.background, (Color{1, 1, 1}));
+  EXPECT_EQ(scene.render.engine, Engine::direct);
+}
+
+TEST(ParseScene, NeedsVersionAndPathAlone) {
+  const Scene scene = parse(R"({"version": 1, "data": {"path": "a.xyz"}})");
+  Scene expected;
+  expected.data_path = "dir/a.xyz";
+  EXPECT_EQ(scene, expected);
+  EXPECT_EQ(parse(R"({"version": 1, "data": {"path": "/b/a.xyz"}})").data_path, "/b/a.xyz");
+  EXPECT_EQ(message_of("{}"), "dir/s.json: expected the key 'version'");
+  EXPECT_EQ(message_of(R"({"version": 2})"),
+            "dir/s.json: version: expected 1, the only version there is, found 2");
+  EXPECT_EQ(message_of(R"({"version": 1})"), "dir/s.json: expected the key 'data'");
+  EXPECT_EQ(message_of(R"({"version": 1, "data": {}})"),
+            "dir/s.json: data: expected the key 'path'");
+}
+
+TEST(ParseScene, NamesTheNearestKey) {
+  EXPECT_EQ(message_of(with_body(R"("camra": {})")),
+            "dir/s.json: unknown key 'camra'; did you mean 'camera'?");
+  EXPECT_EQ(message_of(with_body(R"("fields": [{}, {"raduis": 1}])")),
+            "dir/s.json: fields[1]: unknown key 'raduis'; did you mean 'radius'?");
+  EXPECT_THAT(message_of(with_body(R"("render": {"lighting": {"speculr": 1}})")),
+              HasSubstr("render.lighting: unknown key 'speculr'; did you mean 'specular'?"));
+}
+
+TEST(ParseScene, NamesTheLineOfBrokenJson) {
+  EXPECT_THAT(message_of("{\"version\": 1,\n\n \"data\": }"),
+              HasSubstr("dir/s.json:3: expected JSON: "));
+  EXPECT_THAT(message_of(""), HasSubstr("dir/s.json:1: expected JSON"));
+  EXPECT_THAT(message_of("{\"version\": 1e999}"), HasSubstr("overflow"));
+  EXPECT_THAT(message_of("[1]"), HasSubstr("expected an object, found an array of 1"));
+  EXPECT_THAT(message_of("{\"a\xff\": 1}"), HasSubstr("dir/s.json:1: "));
+}
+
+TEST(ParseScene, RefusesWhatJsonAllowsButNoSceneHas) {
+  EXPECT_EQ(message_of(R"({"version": 1, "version": 1})"),
+            "dir/s.json: the key 'version' is there twice in one object");
+  EXPECT_NE(message_of(with_body(R"("fields": [{"name": "a", "radius": 1}, {"radius": 1}])")),
+            "dir/s.json: the key 'radius' is there twice in one object");
+  EXPECT_THAT(message_of(std::string(1000000, '[')), HasSubstr("nested more than"));
+  std::string objects;
+  for (int i = 0; i < 100000; ++i) objects += "{\"a\":";
+  EXPECT_THAT(message_of(objects), HasSubstr("nested more than"));
+}
+
+struct Refusal {
+  std::string body, message;
+};
+
+class Refuses : public testing::TestWithParam<Refusal> {};
+
+TEST_P(Refuses, WithOneClearLine) {
+  const std::string message = message_of(with_body(GetParam().body));
+  EXPECT_THAT(message, HasSubstr("dir/s.json: " + GetParam().message));
+  EXPECT_EQ(message.find('\n'), std::string::npos);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    ParseScene, Refuses,
+    testing::Values(
+        Refusal{R"("camera": {"eye": [0, 1]})",
+                "camera.eye: expected an array of three numbers, found an array of 2"},
+        Refusal{R"("camera": {"eye": [0, 1, "2"]})",
+                "camera.eye[2]: expected a number, found \"2\""},
+        Refusal{R"("camera": {"up": [0, 0, 0]})", "camera.up: expected a vector"},
+        Refusal{R"("camera": {"fov": 180})", "camera.fov: expected an angle"},
+        Refusal{R"("camera": {"fov": 30, "orthographic": 10})", "camera: expected either"},
+        Refusal{R"("camera": {"orthographic": 0})", "camera.orthographic: expected a number gr"},
+        Refusal{R"("camera": {"eye": [1, 2, 3], "target": [1, 2, 3]})", "camera: expected two"},
+        Refusal{R"("kernel": {"type": "m4"})", "kernel.type: expected \"gaussian\""},
+        Refusal{R"("kernel": {"support_factor": 0})", "kernel.support_factor: expected a number"},
+        Refusal{R"("kernel": 3)", "kernel: expected an object, found 3"},
+        Refusal{R"("fields": {})", "fields: expected an array of fields, found an object"},
+        Refusal{R"("fields": [{"name": ""}])", "fields[0].name: expected a name, found \"\""},
+        Refusal{R"("fields": [{"name": "a"}, {"name": "a"}])", "fields[1].name: expected a name"},
+        Refusal{R"("fields": [{"radius": -1}])",
+                "fields[0].radius: expected a number greater than 0 or the name of a property, "
+                "found -1"},
+        Refusal{R"("fields": [{"radius": 1e-60}])", "fields[0].radius: expected"},
+        Refusal{R"("fields": [{"radius": true}])", "fields[0].radius: expected"},
+        Refusal{R"("fields": [{"weight": 1e60}])", "fields[0].weight: expected"},
+        Refusal{R"("fields": [{"normalise": 1}])", "fields[0].normalise: expected true or false"},
+        Refusal{R"("fields": [{"select": {"species": []}}])", "fields[0].select.species: expected"},
+        Refusal{R"("fields": [{"select": {"species": [3]}}])", "fields[0].select.species[0]: exp"},
+        Refusal{R"("fields": [{"select": {"index": [5, 3]}}])", "fields[0].select.index: expected"},
+        Refusal{R"("fields": [{"select": {"index": [-5, 3]}}])", "fields[0].select.index[0]: exp"},
+        Refusal{R"("fields": [{"select": {"expression": "z >"}}])",
+                "fields[0].select.expression: expression \"z >\", column 4: expected a number"},
+        Refusal{R"("fields": [{"transfer_function": "virids"}])",
+                "fields[0].transfer_function: unknown colour map 'virids'; did you mean 'viridis'"},
+        Refusal{R"("fields": [{"transfer_function": {}}])",
+                "fields[0].transfer_function: expected"},
+        Refusal{R"("fields": [{"transfer_function": {"point": []}}])",
+                "fields[0].transfer_function: unknown key 'point'; did you mean 'points'"},
+        Refusal{R"("fields": [{"transfer_function": {"points": []}}])",
+                "fields[0].transfer_function.points: expected"},
+        Refusal{R"("fields": [{"transfer_function": {"points": [{"value": 1, "color": "#12345",
+                "extinction": 1}]}}])",
+                "fields[0].transfer_function.points[0].color: expected a colour"},
+        Refusal{R"("fields": [{"transfer_function": {"points": [{"value": 1, "color": [0, 0, -1],
+                "extinction": 1}]}}])",
+                "fields[0].transfer_function.points[0].color[2]: expected a number of 0 or more"},
+        Refusal{R"("fields": [{"transfer_function": {"points": [
+                {"value": 1, "color": "#123456", "extinction": 1},
+                {"value": 1, "color": "#123456", "extinction": 1}]}}])",
+                "fields[0].transfer_function.points[1].value: expected a number greater than the "
+                "point's before, 1"},
+        Refusal{R"("fields": [{"transfer_function": {"scale": "log", "points": [
+                {"value": 0, "color": "#123456", "extinction": 1}]}}])",
+                "fields[0].transfer_function.points[0].value: expected a number greater than 0"},
+        Refusal{R"("fields": [{"transfer_function": {"points": [
+                {"value": 1, "color": "#123456", "extinction": -1}]}}])",
+                "fields[0].transfer_function.points[0].extinction: expected a number of 0"},
+        Refusal{R"("fields": [{"transfer_function": {"name": "heat", "range": [2, 1]}}])",
+                "fields[0].transfer_function.range: expected low < high"},
+        Refusal{R"("render": {"size": [0, 5]})",
+                "render.size[0]: expected a whole number from 1 to 16384, found 0"},
+        Refusal{R"("render": {"size": [5, 16385]})", "render.size[1]: expected"},
+        Refusal{R"("render": {"size": [5.5, 5]})", "render.size[0]: expected"},
+        Refusal{R"("render": {"step_size": 0})", "render.step_size: expected"},
+        Refusal{R"("render": {"termination_opacity": 1.5})", "render.termination_opacity: exp"},
+        Refusal{R"("render": {"lighting": {"shininess": -1}})", "render.lighting.shininess: exp"},
+        Refusal{R"("render": {"background": "black"})", "render.background: expected a colour"},
+        Refusal{R"("render": {"engine": "cells"})",
+                "render.engine: the engine 'cells' is not built yet"},
+        Refusal{R"("render": {"engine": "swep"})",
+                "render.engine: unknown engine 'swep'; did you mean 'sweep'?"}));
+
+TEST(ParseScene, DataIsChecked) {
+  const auto message = [](const std::string& data) {
+    return message_of(R"({"version": 1, "data": )" + data + "}");
+  };
+  EXPECT_THAT(message(R"({"path": ""})"), HasSubstr("data.path: expected the path of a file"));
+  EXPECT_THAT(message(R"({"path": "a", "frame": -1})"), HasSubstr("data.frame: expected a whole"));
+  EXPECT_THAT(message(R"({"path": "a", "types": {"Si": "1"}})"), HasSubstr("data.types: expected"));
+  EXPECT_THAT(message(R"({"path": "a", "types": {"1": ""}})"), HasSubstr("data.types.1: expected"));
+}
+
+double random_double(int low, int high) { return *rc::gen::inRange(low, high) / 7.0; }
+
+template <class F>
+auto maybe(F&& make) -> std::optional<decltype(make())> {
+  if (*rc::gen::arbitrary<bool>()) return make();
+  return std::nullopt;
+}
+
+std::string random_name() { return *rc::gen::nonEmpty(rc::gen::string<std::string>()); }
+
+/// Text that is UTF-8, as JSON demands.
+std::string random_text() {
+  std::string text = "é";
+  for (const char c : random_name()) text += static_cast<char>(c & 0x7f);
+  return text;
+}
+
+Vector3d random_vector() {
+  return {random_double(-999, 999), random_double(1, 999), random_double(-999, 999)};
+}
+
+Color random_color() {
+  if (*rc::gen::arbitrary<bool>()) return color_from_srgb(*rc::gen::inRange(0u, 0x1000000u));
+  const auto channel = [] { return static_cast<float>(random_double(0, 20)); };
+  return {channel(), channel(), channel()};
+}
+
+decltype(Field::transfer_function) random_transfer_function() {
+  const int kind = *rc::gen::inRange(0, 3);
+  if (kind == 0) return {};
+  if (kind == 1) {
+    NamedTransferFunction named{"plasma", {}, {}, {}};
+    named.log_scale = maybe([] { return *rc::gen::arbitrary<bool>(); });
+    named.extinction = maybe([] { return random_double(0, 9); });
+    named.range = maybe([] {
+      const double low = random_double(1, 99);
+      return std::pair(low, low + random_double(1, 99));
+    });
+    return named;
+  }
+  TransferFunction function;
+  function.log_scale = *rc::gen::arbitrary<bool>();
+  double value = random_double(1, 9);
+  for (int n = *rc::gen::inRange(1, 6); n > 0; --n, value += random_double(1, 9)) {
+    function.points.push_back({value, random_color(), random_double(0, 99)});
+  }
+  return function;
+}
+
+Field random_field(int number) {
+  Field field;
+  if (*rc::gen::arbitrary<bool>()) field.name = fmt::format("{}{}", random_text(), number);
+  if (*rc::gen::arbitrary<bool>()) field.select.species = {random_text(), random_text()};
+  field.select.index = maybe([] {
+    const auto first = *rc::gen::arbitrary<std::uint32_t>();
+    return std::pair(std::uint64_t{first}, std::uint64_t{first} + 5);
+  });
+  if (*rc::gen::arbitrary<bool>()) field.select.expression = "z > 3 && species == \"Si\"";
+  field.radius = maybe([] { return NumberOrProperty(random_double(1, 99)); });
+  field.weight = maybe([] { return NumberOrProperty(random_text()); });
+  field.normalise = maybe([] { return *rc::gen::arbitrary<bool>(); });
+  field.support_factor = maybe([] { return random_double(1, 30); });
+  field.kernel_scale = maybe([] { return random_double(-30, 30); });
+  field.transfer_function = random_transfer_function();
+  return field;
+}
+
+RC_GTEST_PROP(SceneToJson, ReadsBackEqual, ()) {
+  Scene scene;
+  scene.data_path = (std::filesystem::path("/data/runs") / "a b.xyz").lexically_normal();
+  scene.frame = *rc::gen::arbitrary<std::uint64_t>();
+  if (*rc::gen::arbitrary<bool>()) scene.types = {{1, random_text()}, {20, "O"}};
+  scene.eye = maybe([] { return Point3d(random_vector()); });
+  scene.target = maybe([] { return Point3d{0, -1, 0}; });
+  scene.up = maybe(random_vector);
+  if (*rc::gen::arbitrary<bool>()) {
+    scene.fov_degrees = maybe([] { return random_double(1, 1259); });
+  } else {
+    scene.orthographic_height = maybe([] { return random_double(1, 999); });
+  }
+  scene.kernel = {random_double(1, 30), random_double(-30, 30)};
+  for (int n = *rc::gen::inRange(0, 4); n > 0; --n) scene.fields.push_back(random_field(n));
+  scene.render.width = *rc::gen::inRange(1, 16385);
+  scene.render.step_size = maybe([] { return random_double(1, 30); });
+  scene.render.termination_opacity = random_double(1, 8);
+  scene.render.lighting.direction = maybe(random_vector);
+  scene.render.lighting.enabled = *rc::gen::arbitrary<bool>();
+  scene.render.background = random_color();
+  scene.render.engine = *rc::gen::element(Engine::sweep, Engine::coherent, Engine::direct);
+
+  const std::string text = scene_to_json(scene, "/data/scenes");
+  RC_ASSERT(parse_scene(text, "/data/scenes/s.json") == scene);
+}
+
+RC_GTEST_PROP(ParseScene, AnyTextIsAnswered, (const std::string& text)) {
+  try {
+    parse(text);
+    RC_FAIL("random text is no scene");
+  } catch (const Error& error) {
+    RC_ASSERT(std::string(error.what()).find('\n') == std::string::npos);
+  }
+}
+
+TEST(SceneToJson, RefusesNamesThatJsonCannotHold) {
+  Scene scene;
+  scene.data_path = "a";
+  scene.fields.resize(1);
+  scene.fields[0].name = "\xff";
+  EXPECT_THROW(scene_to_json(scene, ""), Error);
+}
+
+TEST(EngineNames, AreReadBack) {
+  for (const Engine engine : {Engine::sweep, Engine::coherent, Engine::direct}) {
+    EXPECT_EQ(engine_from_name(name_of(engine)), engine);
+  }
+}
+
+}  // namespace
+}  // namespace motes
