@@ -13,6 +13,16 @@ if(MOTES_SANITIZE)
   add_compile_options(-fsanitize=${MOTES_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   add_link_options(-fsanitize=${MOTES_SANITIZE})
 endif()
+if(MOTES_SANITIZE STREQUAL "thread")
+  # Programs (not libraries) take what shows oneTBB's synchronisation to the sanitizer.
+  add_library(motes_tsan_tbb OBJECT ${PROJECT_SOURCE_DIR}/tests/support/tsan_tbb.cc)
+  target_sources(motes_compiler INTERFACE
+    $<$<STREQUAL:$<TARGET_PROPERTY:TYPE>,EXECUTABLE>:$<TARGET_OBJECTS:motes_tsan_tbb>>)
+  link_libraries(TBB::tbb)
+endif()
+if(MOTES_FUZZ)
+  add_compile_options(-fsanitize=fuzzer-no-link)
+endif()
 
 find_program(CCACHE_PROGRAM ccache)
 if(CCACHE_PROGRAM)

@@ -1,10 +1,10 @@
-# What script/bootstrap installs (Debian packages); rooms link what they need of it.
+# What the library needs, of what script/bootstrap installs; rooms link what they need of it. Installed
+# with the library, so that find_package(motes) finds the same.
 find_package(Threads REQUIRED)
 find_package(fmt REQUIRED)
 find_package(TBB REQUIRED)
 find_package(hwy REQUIRED)
 find_package(nlohmann_json REQUIRED)
-find_package(CLI11 REQUIRED)
 find_package(LibArchive REQUIRED)
 find_package(JPEG REQUIRED)
 find_package(ZLIB REQUIRED)

@@ -20,11 +20,9 @@ struct AlignedAllocator {
     using other = AlignedAllocator<U>;
   };
   T* allocate(std::size_t n) {
-    return static_cast<T*>(::operator new(n * sizeof(T), std::align_val_t{cache_line_bytes}));
+    return static_cast<T*>(::operator new (n * sizeof(T), std::align_val_t{cache_line_bytes}));
   }
-  void deallocate(T* p, std::size_t) {
-    ::operator delete(p, std::align_val_t{cache_line_bytes});
-  }
+  void deallocate(T* p, std::size_t) { ::operator delete (p, std::align_val_t{cache_line_bytes}); }
   template <class U>
   bool operator==(const AlignedAllocator<U>&) const {
     return true;

@@ -27,9 +27,12 @@ struct PointTag {};
 struct VectorTag {};
 struct NormalTag {};
 
-template <class T> using Point3 = Tuple3<T, PointTag>;
-template <class T> using Vector3 = Tuple3<T, VectorTag>;
-template <class T> using Normal3 = Tuple3<T, NormalTag>;
+template <class T>
+using Point3 = Tuple3<T, PointTag>;
+template <class T>
+using Vector3 = Tuple3<T, VectorTag>;
+template <class T>
+using Normal3 = Tuple3<T, NormalTag>;
 using Point3f = Point3<float>;
 using Point3d = Point3<double>;
 using Vector3f = Vector3<float>;

@@ -85,14 +85,31 @@ double ByteStream::fraction() const {
 
 std::size_t ByteStream::read(char* out, std::size_t size) {
   std::size_t filled = 0;
-  while (filled < size && !at_end_) {
-    const la_ssize_t n = archive_read_data(archive_.get(), out + filled, size - filled);
-    if (n == ARCHIVE_RETRY) continue;
-    if (n < 0) fail();
-    at_end_ = n == 0;
-    filled += static_cast<std::size_t>(n);
+  while (filled < size) {
+    if (block_.empty() && !next_block(filled)) break;
+    const std::size_t n = block_.copy(out + filled, size - filled);
+    block_.remove_prefix(n);
+    filled += n;
   }
   return filled;
+}
+
+/// Decompresses the next block; false at the end, or before damage if something has been `filled`.
+bool ByteStream::next_block(std::size_t filled) {
+  while (!at_end_) {
+    const void* data = nullptr;
+    std::size_t size = 0;
+    la_int64_t offset = 0;
+    const int result = archive_read_data_block(archive_.get(), &data, &size, &offset);
+    at_end_ = result == ARCHIVE_EOF;
+    if (result < ARCHIVE_WARN) {
+      if (filled == 0) fail();
+      return false;
+    }
+    block_ = {static_cast<const char*>(data), at_end_ ? 0 : size};
+    if (!block_.empty()) return true;
+  }
+  return false;
 }
 
 MappedFile::MappedFile(const std::filesystem::path& path)
@@ -125,7 +142,7 @@ std::string read_decompressed(const std::filesystem::path& path, const ReadOptio
   const std::string activity = reading_activity(path);
   const std::size_t block_bytes = std::size_t{4} << 20;
   std::string content;
-  for (std::size_t n = block_bytes; n == block_bytes;) {
+  for (std::size_t n = block_bytes; n > 0;) {
     const std::size_t size = content.size();
     content.resize(size + block_bytes);
     n = stream.read(content.data() + size, block_bytes);

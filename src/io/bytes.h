@@ -21,7 +21,8 @@ class ByteStream {
  public:
   explicit ByteStream(const std::filesystem::path& path);
 
-  /// Fills `out` with the next bytes; fewer than `size` only at the end.
+  /// Fills `out` with the next bytes; fewer than `size` at the end, 0 behind it. What comes before
+  /// damage is given before the Error is thrown.
   std::size_t read(char* out, std::size_t size);
   bool compressed() const;
   /// How much of the file has been consumed, in [0, 1].
@@ -32,11 +33,13 @@ class ByteStream {
     void operator()(archive* a) const;
   };
 
+  bool next_block(std::size_t filled);
   [[noreturn]] void fail() const;
 
   std::filesystem::path path_;
   std::uint64_t file_size_;
   std::unique_ptr<archive, Close> archive_;
+  std::string_view block_;  ///< decompressed, not given yet
   bool at_end_ = false;
 };
 

@@ -5,7 +5,10 @@ namespace motes {
 
 const std::vector<Format>& formats() {
   // Formats with an unmistakable mark come first, those that are guessed from a few lines last.
-  static const std::vector<Format> table{};
+  static const std::vector<Format> table{
+      lammps_dump_format(),
+      xyz_format(),
+  };
   return table;
 }
 

@@ -3,4 +3,9 @@
 
 #include "io/format.h"
 
-namespace motes {}  // namespace motes
+namespace motes {
+
+const Format& lammps_dump_format();
+const Format& xyz_format();
+
+}  // namespace motes

@@ -8,8 +8,8 @@
 namespace motes {
 
 struct Cell {
-  Point3d origin;                  ///< the corner from which the vectors start, world coordinates
-  std::array<Vector3d, 3> vectors; ///< edges a, b, c; file's length unit
+  Point3d origin;                   ///< the corner from which the vectors start, world coordinates
+  std::array<Vector3d, 3> vectors;  ///< edges a, b, c; file's length unit
   std::array<bool, 3> periodic{true, true, true};
 
   bool operator==(const Cell&) const = default;

@@ -35,7 +35,8 @@ Bounds3d ParticleSet::bounds() const {
 namespace {
 
 /// The middle of the finite values, rounded to a multiple of a power of two near their extent;
-/// 0 where the values are near zero already, so that files with small coordinates keep them as they are.
+/// 0 where the values are near zero already, so that files with small coordinates keep them as they
+/// are.
 double choose_origin(const std::vector<double>& values) {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (const double v : values) {

@@ -41,12 +41,10 @@ struct ParticleSet {
 
   std::optional<Cell> cell;
   std::optional<double> time;  ///< the file's own unit
-  std::string length_unit;     ///< "angstrom" for molecular formats, else the file's unit, or "unknown"
+  std::string length_unit;     ///< "angstrom" for molecular formats, the file's unit, or "unknown"
 
   std::size_t size() const { return x.size(); }
-  Point3d position(std::size_t i) const {
-    return origin + Vector3d{x[i], y[i], z[i]};
-  }
+  Point3d position(std::size_t i) const { return origin + Vector3d{x[i], y[i], z[i]}; }
   /// The property of that name, or null.
   const Property* find_property(std::string_view name) const;
   /// Index of `name` in species_names, added if it is not there.

@@ -12,8 +12,8 @@ struct Camera {
   Point3d target{0, 0, -1};
   Vector3d up{0, 1, 0};
   double fov_degrees = 45;  ///< vertical, in (0, 180)
-  std::optional<double>
-      orthographic_height;  ///< set: parallel rays, this height of the image in length units
+  /// Set: parallel rays, this height of the image in length units.
+  std::optional<double> orthographic_height;
 
   bool operator==(const Camera&) const = default;
 };

@@ -1,0 +1,25 @@
+// Names for numeric particle types.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "io/reader.h"
+#include "io/table.h"
+
+namespace motes {
+
+/// What a file says of its types, by the type as it is written there.
+struct TypeHints {
+  std::map<std::string, std::string> labels;  ///< names that the file itself gives
+  std::map<std::string, double> masses;       ///< u
+};
+
+/// Fills species and species_names of `particles` from a column of words, types sorted by number.
+/// A type is named by the first of: options.types; the file's label; the element of its mass, with
+/// a warning; its own number.
+void name_types(const std::filesystem::path& file, const Column& types, const TypeHints& hints,
+                const ReadOptions& options, ParticleSet& particles);
+
+}  // namespace motes
