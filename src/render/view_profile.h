@@ -1,0 +1,16 @@
+// Looks along a coarse grid of rays, so that transfer functions can be fitted to what a view shows.
+#pragma once
+
+#include <vector>
+
+#include "field/kernel_set.h"
+#include "scene/camera.h"
+#include "scene/view_profile.h"
+
+namespace motes {
+
+/// One profile a field, for the picture of that camera and size. Deterministic.
+std::vector<ViewProfile> sample_view(const KernelSet& kernels, const Camera& camera, int width,
+                                     int height);
+
+}  // namespace motes
