@@ -1,0 +1,151 @@
+// Step sizes and transfer functions fitted to the data.
+#include "scene/fit.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+
+namespace motes {
+namespace {
+
+constexpr double max_samples = 2048;            // along the diagonal of the volume
+constexpr std::size_t radii_looked_at = 65536;  // of one field: enough for a quantile
+
+// Where values of one sign span more decades than this, their scale is logarithmic.
+constexpr double log_decades = 2.5;
+// Of the rays that meet matter, on average. Several fields share it.
+constexpr double target_opacity = 0.7;
+constexpr const char* default_map = "viridis";
+
+/// The value below which `fraction` of `values` lie; reorders them. Precondition: not empty.
+double quantile(std::vector<float>& values, double fraction) {
+  const auto rank = static_cast<std::size_t>(fraction * static_cast<double>(values.size() - 1));
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(rank);
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+struct Range {
+  double low = 0, high = 1;
+  bool log_scale = false, both_signs = false;
+};
+
+Range fit_range(const RayProfiles& profiles, std::optional<bool> log_scale) {
+  std::vector<float> positive, absolute;
+  for (const float v : profiles.values) {
+    if (!std::isfinite(v) || v == 0) continue;
+    if (v > 0) positive.push_back(v);
+    absolute.push_back(std::abs(v));
+  }
+  if (absolute.empty()) return {};
+  Range range;
+  const bool wants_log = log_scale.value_or(false) && !positive.empty();
+  if (positive.size() < absolute.size() && !wants_log) {
+    range.both_signs = true;
+    range.high = quantile(absolute, 0.999);
+    range.low = -range.high;
+    return range;
+  }
+  const double largest = quantile(positive, 0.999);
+  const double small = quantile(positive, 0.05);
+  range.log_scale = log_scale.value_or(std::log10(largest / small) > log_decades);
+  range.low = quantile(positive, 0.5);
+  range.high = largest;
+  if (!(range.low < range.high)) {  // (nearly) one value everywhere: a slab
+    range.low = 0.5 * range.high;
+    range.high *= 1.5;
+  }
+  return range;
+}
+
+/// How far `value` lies in the range, 0 to 1; the extinction rises with it.
+double ramp(const Range& range, double value) {
+  if (range.both_signs) return std::min(std::abs(value) / range.high, 1.0);
+  if (range.log_scale) {
+    if (!(value > range.low)) return 0;
+    return std::min(std::log(value / range.low) / std::log(range.high / range.low), 1.0);
+  }
+  return std::clamp((value - range.low) / (range.high - range.low), 0.0, 1.0);
+}
+
+/// The extinction at the end of the ramp that makes rays through matter as opaque as they should be
+/// on average.
+double fit_extinction(const RayProfiles& profiles, const Range& range, double opacity) {
+  std::vector<double> depth;  // of each ray that meets matter, for an extinction of 1
+  for (std::size_t ray = 0; ray < profiles.spacing.size(); ++ray) {
+    double sum = 0;
+    for (std::size_t k = profiles.ray_begin[ray]; k < profiles.ray_begin[ray + 1]; ++k) {
+      sum += ramp(range, profiles.values[k]);
+    }
+    if (sum > 0) depth.push_back(sum * profiles.spacing[ray]);
+  }
+  if (depth.empty()) return 1;
+  const auto mean_opacity = [&depth](double extinction) {
+    double sum = 0;
+    for (const double d : depth) sum += 1 - std::exp(-extinction * d);
+    return sum / static_cast<double>(depth.size());
+  };
+  // The mean rises with the extinction: bisect its logarithm about one over the middle depth.
+  const auto middle = depth.begin() + static_cast<std::ptrdiff_t>(depth.size() / 2);
+  std::nth_element(depth.begin(), middle, depth.end());
+  double low = 1e-4 / *middle, high = 1e4 / *middle;
+  for (int step = 0; step < 60; ++step) {
+    const double extinction = std::sqrt(low * high);
+    (mean_opacity(extinction) < opacity ? low : high) = extinction;
+  }
+  return high;
+}
+
+TransferFunction one_color(const Color& color, const Range& range, double extinction) {
+  TransferFunction function;
+  function.log_scale = range.log_scale;
+  if (range.both_signs) function.points.push_back({range.low, color, extinction});
+  const double start = range.both_signs ? 0 : range.low;
+  function.points.push_back({start, color, 0});
+  function.points.push_back({range.high, color, extinction});
+  return function;
+}
+
+}  // namespace
+
+double default_step_size(const std::vector<FieldSource>& fields, const Bounds3d& box) {
+  std::vector<float> radii;
+  for (const FieldSource& field : fields) {
+    const std::size_t stride = 1 + field.radius.size() / radii_looked_at;
+    for (std::size_t i = 0; i < field.radius.size(); i += stride) radii.push_back(field.radius[i]);
+  }
+  if (radii.empty()) return 1;
+  return std::max(0.5 * quantile(radii, 0.05), length(box.diagonal()) / max_samples);
+}
+
+TransferFunction fit_transfer_function(const decltype(Field::transfer_function)& wish,
+                                       const Color& species_color, const RayProfiles& profiles,
+                                       std::size_t num_fields) {
+  if (const auto* given = std::get_if<TransferFunction>(&wish)) return *given;
+  NamedTransferFunction named;
+  if (const auto* given = std::get_if<NamedTransferFunction>(&wish)) named = *given;
+  if (named.name.empty()) named.name = default_map;
+
+  Range range;
+  if (named.range) {
+    range.low = named.range->first;
+    range.high = named.range->second;
+    range.log_scale = named.log_scale.value_or(false);
+  } else {
+    range = fit_range(profiles, named.log_scale);
+  }
+  const double share = 1 - std::pow(1 - target_opacity, 1 / static_cast<double>(num_fields));
+  const double extinction =
+      named.extinction ? *named.extinction : fit_extinction(profiles, range, share);
+
+  if (named.name == species_colors) return one_color(species_color, range, extinction);
+  TransferFunction function =
+      named_transfer_function(named.name, range.low, range.high, extinction, range.log_scale);
+  for (auto& point : function.points) point.extinction = extinction * ramp(range, point.value);
+  return function;
+}
+
+}  // namespace motes
