@@ -6,6 +6,7 @@ namespace motes {
 const std::vector<Format>& formats() {
   // Formats with an unmistakable mark come first, those that are guessed from a few lines last.
   static const std::vector<Format> table{
+      hdf5_format(),
       lammps_dump_format(),
       xyz_format(),
   };

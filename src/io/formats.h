@@ -5,6 +5,7 @@
 
 namespace motes {
 
+const Format& hdf5_format();
 const Format& lammps_dump_format();
 const Format& xyz_format();
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <utility>
 
 namespace motes {
 
@@ -37,7 +38,8 @@ namespace {
 /// The middle of the finite values, rounded to a multiple of a power of two near their extent;
 /// 0 where the values are near zero already, so that files with small coordinates keep them as they
 /// are.
-double choose_origin(const std::vector<double>& values) {
+template <class T>
+double choose_origin(const std::vector<T>& values) {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (const double v : values) {
     if (!std::isfinite(v)) continue;
@@ -52,10 +54,11 @@ double choose_origin(const std::vector<double>& values) {
   return std::round(middle / grid) * grid;
 }
 
-void shift_into(const std::vector<double>& values, double origin, std::vector<float>& out) {
-  out.resize(values.size());
+template <class T>
+void shift_into(const std::vector<T>& values, double origin, std::vector<float>& out) {
+  out.resize(values.size());  // `out` may be `values`
   std::transform(values.begin(), values.end(), out.begin(),
-                 [&](double v) { return static_cast<float>(v - origin); });
+                 [&](T v) { return static_cast<float>(double(v) - origin); });
 }
 
 }  // namespace
@@ -67,6 +70,19 @@ void set_positions(ParticleSet& particles, const std::vector<double>& x,
   shift_into(x, particles.origin.x, particles.x);
   shift_into(y, particles.origin.y, particles.y);
   shift_into(z, particles.origin.z, particles.z);
+}
+
+void set_positions(ParticleSet& particles, std::vector<float> x, std::vector<float> y,
+                   std::vector<float> z) {
+  assert(x.size() == y.size() && x.size() == z.size());
+  particles.x = std::move(x);
+  particles.y = std::move(y);
+  particles.z = std::move(z);
+  particles.origin = {choose_origin(particles.x), choose_origin(particles.y),
+                      choose_origin(particles.z)};
+  shift_into(particles.x, particles.origin.x, particles.x);
+  shift_into(particles.y, particles.origin.y, particles.y);
+  shift_into(particles.z, particles.origin.z, particles.z);
 }
 
 }  // namespace motes

@@ -58,4 +58,8 @@ struct ParticleSet {
 void set_positions(ParticleSet& particles, const std::vector<double>& x,
                    const std::vector<double>& y, const std::vector<double>& z);
 
+/// The same from positions in single precision, in place.
+void set_positions(ParticleSet& particles, std::vector<float> x, std::vector<float> y,
+                   std::vector<float> z);
+
 }  // namespace motes
