@@ -27,6 +27,14 @@ std::size_t KernelSet::particle_bytes() const {
   return floats * sizeof(float) + field.size();
 }
 
+Bounds3d KernelSet::box() const {
+  double max_support = 0;
+  for (const FieldKernels& f : fields) {
+    max_support = std::max(max_support, f.kernel.support_factor * f.max_radius);
+  }
+  return centers.extended(max_support);
+}
+
 namespace {
 
 /// The power of two that brings `magnitude` into [1, 2); 1 for 0.
@@ -46,6 +54,11 @@ double effective_weight(const FieldSource& source, std::size_t i, double length_
   return weight / (radius * radius * radius) * length_scale * length_scale * length_scale;
 }
 
+/// In file's lengths.
+double max_radius_of(const FieldSource& source) {
+  return source.radius.empty() ? 0 : *std::max_element(source.radius.begin(), source.radius.end());
+}
+
 FieldKernels summarise(const FieldSource& source, double length_scale) {
   FieldKernels field{.name = source.name, .kernel = source.kernel, .normalise = source.normalise};
   float min_radius = std::numeric_limits<float>::max();
@@ -59,6 +72,7 @@ FieldKernels summarise(const FieldSource& source, double length_scale) {
     negative = negative || weight < 0;
   }
   field.min_radius = static_cast<float>(min_radius * length_scale);
+  field.max_radius = max_radius_of(source);
   field.mixed_signs = positive && negative;
   field.value_scale = unit_scale(max_weight);
   return field;
@@ -119,16 +133,11 @@ KernelSet build_kernel_set(const ParticleSet& particles, const std::vector<Field
   Bounds3f centers;
   double max_radius = 0;
   for (const FieldSource& source : fields) {
+    max_radius = std::max(max_radius, max_radius_of(source));
     for (std::size_t i = 0; i < source.index.size(); ++i) {
       const std::uint32_t p = source.index[i];
       centers.add(Point3f{particles.x[p], particles.y[p], particles.z[p]});
     }
-    for (const float r : source.radius) max_radius = std::max(max_radius, static_cast<double>(r));
-    const double support = source.radius.empty()
-                               ? 0.0
-                               : *std::max_element(source.radius.begin(), source.radius.end()) *
-                                     source.kernel.support_factor;
-    set.max_support = std::max(set.max_support, support);
   }
   if (centers.empty()) return set;
   const Vector3d shift{set.origin.x, set.origin.y, set.origin.z};

@@ -21,6 +21,7 @@ struct FieldKernels {
   bool normalise = false;
   bool mixed_signs = false;  ///< weights of both signs: sum |phi| is not |Phi|
   float min_radius = 0;      ///< internal length
+  double max_radius = 0;     ///< file's length
   double value_scale = 1;    ///< internal weight = weight * value_scale, a power of two
 
   /// Factor on an internal weight (already over radius^3 where normalised) that gives a kernel's
@@ -33,8 +34,8 @@ struct FieldKernels {
 /// so far away that nothing meets them.
 ///
 /// Lengths are internal: file's length times length_scale, a power of two that brings the extent of
-/// the data near 1, so that no square overflows and the results are those of the file's units, bit
-/// for bit. Values are internal too (FieldKernels::value_scale).
+/// the data near 1, so that no square overflows and no digit is lost. Values are internal too
+/// (FieldKernels::value_scale).
 struct KernelSet {
   Point3d origin;  ///< of positions; file's lengths, world axes
   double length_scale = 1;
@@ -42,15 +43,14 @@ struct KernelSet {
   AlignedVector<std::uint8_t>
       field;  ///< index of each kernel's field; empty if there is only one field
   std::vector<FieldKernels> fields;
-  Bounds3d centers;        ///< of all kernels; file's lengths, world axes
-  double max_support = 0;  ///< the largest support radius; file's lengths
+  Bounds3d centers;  ///< of all kernels; file's lengths, world axes
   Bvh bvh;
 
   std::size_t size() const { return bvh.num_particles; }
   /// Bytes of the per-particle arrays.
   std::size_t particle_bytes() const;
   /// The volume's box: centres extended by the largest support radius; file's lengths, world axes.
-  Bounds3d box() const { return centers.extended(max_support); }
+  Bounds3d box() const;
 };
 
 /// Gathers the fields' particles and builds the tree. Throws Error for too many fields or kernels.

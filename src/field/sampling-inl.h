@@ -77,8 +77,7 @@ inline SamplingConstants make_constants(const KernelSet& kernels) {
 HWY_INLINE unsigned node_hits(const Bvh::Node& node, const SlabFrame& frame, float support_factor) {
   const hn::CappedTag<float, Bvh::width> d;
   using V = hn::Vec<decltype(d)>;
-  // Rounding of world coordinates, which are near 1 (KernelSet::length_scale).
-  const V slack = hn::Set(d, 2e-6f);
+  const V slack = hn::Set(d, frame.slack);
   unsigned hits = 0;
   for (std::size_t c = 0; c < Bvh::width; c += hn::Lanes(d)) {
     const V reach = hn::MulAdd(hn::Set(d, support_factor), hn::Load(d, node.max_radius + c), slack);

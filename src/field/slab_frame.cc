@@ -36,6 +36,9 @@ SlabFrame make_slab_frame(const RayPacket& packet, const Slab& slab, const View&
     frame.reference_low[i] = static_cast<float>(frame.reference[i] - frame.reference_high[i]);
     for (int j = 0; j < 3; ++j) frame.axes[i][j] = static_cast<float>(rows[i][j]);
   }
+  const auto& r = frame.reference;
+  frame.slack =
+      static_cast<float>(1e-6 * (2 + std::max({std::abs(r.x), std::abs(r.y), std::abs(r.z)})));
   frame.step = static_cast<float>(view.step);
   frame.count = slab.count;
   frame.lanes = packet.lanes;
@@ -65,7 +68,7 @@ SlabFrame make_slab_frame(const RayPacket& packet, const Slab& slab, const View&
         offset + dot(world, Vector3d{frame.reference.x, frame.reference.y, frame.reference.z}));
   };
   const auto set_side = [&](int i, int axis, double sign, double direction, double origin) {
-    const double norm = 1 / std::hypot(1.0, direction);
+    const double norm = 1 / std::sqrt(1 + direction * direction);
     Vector3d normal{0, 0, -sign * direction * norm};
     normal[axis] = sign * norm;
     set_plane(i, normal, sign * norm * origin);
@@ -83,11 +86,12 @@ SlabFrame make_slab_frame(const RayPacket& packet, const Slab& slab, const View&
       dx.low * dx.high <= 0 ? 0 : std::min(std::abs(dx.low), std::abs(dx.high));
   const double flattest_y =
       dy.low * dy.high <= 0 ? 0 : std::min(std::abs(dy.low), std::abs(dy.high));
-  const double tangent = std::hypot(steepest_x, steepest_y);
-  frame.max_sine = static_cast<float>(tangent / std::hypot(1.0, tangent));
-  frame.max_cosine = static_cast<float>(1 / std::hypot(1.0, flattest_x, flattest_y));
-  const double cosine =
-      steepest_x / std::hypot(1.0, steepest_x) * steepest_y / std::hypot(1.0, steepest_y);
+  const double tangent_sq = steepest_x * steepest_x + steepest_y * steepest_y;
+  frame.max_sine = static_cast<float>(std::sqrt(tangent_sq / (1 + tangent_sq)));
+  frame.max_cosine =
+      static_cast<float>(1 / std::sqrt(1 + flattest_x * flattest_x + flattest_y * flattest_y));
+  const double cosine = steepest_x * steepest_y /
+                        std::sqrt((1 + steepest_x * steepest_x) * (1 + steepest_y * steepest_y));
   frame.corner_factor = static_cast<float>(1 / (1 + cosine));
   return frame;
 }

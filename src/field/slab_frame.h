@@ -34,6 +34,7 @@ struct SlabFrame {
   Point3d reference;                          ///< internal
   float reference_high[3], reference_low[3];  ///< reference = high + low to 2^-48
   float axes[3][3];                           ///< rows X, Y, F: world to camera axes
+  float slack = 0;  ///< bound of the rounding of world coordinates near the reference
   float step = 0, first_depth = 0;  ///< depth of the slab's plane 0, relative to the reference
   int count = 0;                    ///< planes
   /// Sides -x, +x, -y, +y, then near and far plane.

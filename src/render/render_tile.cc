@@ -59,16 +59,12 @@ TileCounts render_packet(const FrameContext& context, const SamplingConstants& c
   PacketRange range = live_range(packet);
   const RayPacket whole = packet;
   for (SampleIndex k = range.first; k <= range.last; k += context.samples_per_pass) {
-    const SampleIndex rest = range.last - k + 1;
-    Slab slab{k, static_cast<int>(rest)};
-    if (context.samples_per_pass != 0) {
-      slab.count = static_cast<int>(std::min<SampleIndex>(rest, context.samples_per_pass));
-    }
+    const Slab slab{
+        k, static_cast<int>(std::min<SampleIndex>(range.last - k + 1, context.samples_per_pass))};
     buffer.reserve(slab.count);
     counts.kernel_evaluations += sample_field(context, constants, packet, slab, buffer);
     integrate(context.classifiers, context.shading, slab, buffer, packet, pixels);
     buffer.clear();
-    if (context.samples_per_pass == 0) break;
     range = live_range(packet);
   }
   for (int l = 0; l < packet.lanes; ++l) {
@@ -87,7 +83,7 @@ TileCounts render_tile(const FrameContext& context, const Tile& tile, Framebuffe
                             .gradients = context.gradients,
                             .absolute = context.absolute,
                             .lanes = lanes};
-  SampleBuffer buffer(layout, std::max(1, context.samples_per_pass));
+  SampleBuffer buffer(layout, std::min(context.samples_per_pass, 64));
   TileCounts counts;
   for (int py = tile.y; py < tile.y + tile.height; py += packet_height) {
     for (int px = tile.x; px < tile.x + tile.width; px += packet_width) {

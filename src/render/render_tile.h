@@ -28,7 +28,7 @@ struct FrameContext {
   ShadingConstants shading;
   Engine engine = Engine::coherent;
   bool gradients = false, absolute = false;  ///< channels of the samples
-  int samples_per_pass = 0;                  ///< planes of a slab; 0: the whole ray at once
+  int samples_per_pass = 32;                 ///< planes of a slab
 };
 
 /// Pixels x to x + width - 1, y to y + height - 1.

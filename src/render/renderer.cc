@@ -1,5 +1,6 @@
 #include "render/renderer.h"
 
+#include <fmt/format.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
@@ -12,6 +13,7 @@
 #include <mutex>
 #include <numbers>
 
+#include "core/error.h"
 #include "render/render_tile.h"
 
 namespace motes {
@@ -47,8 +49,30 @@ ShadingConstants make_shading(const ResolvedScene& scene, const CameraAxes& axes
   return shading;
 }
 
+/// A single pass holds a whole ray, but no more than this: a buffer of 4 MiB a field and channel.
+constexpr int max_single_pass = 1 << 16;
+
+/// Refuses steps so small that a frame would never end.
+void check_step(const KernelSet& kernels, const ResolvedScene& scene) {
+  constexpr double max_samples = 1e7;
+  const double samples = length(kernels.box().diagonal()) / scene.step_size;
+  if (samples > max_samples) {
+    throw Error(fmt::format(
+        "step_size {:g} takes {:.3g} samples through the volume, expected a step of {:g} or more",
+        scene.step_size, samples, samples * scene.step_size / max_samples));
+  }
+  const double farthest = length(kernels.box().center() - scene.camera.eye);
+  constexpr double max_index = 4503599627370496.0;  // 2^52: depths of planes are still exact
+  if (farthest / scene.step_size > max_index) {
+    throw Error(
+        fmt::format("the eye is {:g} away from the data, expected at most {:g} steps of {:g}",
+                    farthest, max_index, scene.step_size));
+  }
+}
+
 FrameContext make_context(const KernelSet& kernels, const ResolvedScene& scene,
                           const RenderOptions& options) {
+  check_step(kernels, scene);
   const CameraAxes axes = camera_axes(scene.camera);
   FrameContext context;
   context.kernels = &kernels;
@@ -73,8 +97,8 @@ FrameContext make_context(const KernelSet& kernels, const ResolvedScene& scene,
   context.gradients = scene.render.lighting.enabled;
   context.absolute = context.absolute && context.gradients;
   const int num_fields = static_cast<int>(kernels.fields.size());
-  context.samples_per_pass =
-      options.samples_per_pass.value_or(num_fields == 1 ? 32 : std::max(1, 64 / num_fields));
+  const int per_pass = options.samples_per_pass.value_or(num_fields == 1 ? 32 : 64 / num_fields);
+  context.samples_per_pass = per_pass == 0 ? max_single_pass : per_pass;
   return context;
 }
 

@@ -37,7 +37,8 @@ class Renderer {
 
   /// The picture: linear, premultiplied. The scene's transfer functions are one a field of the
   /// constructor's; its `fields` are not looked at, so kernel_scale and support_factor come from
-  /// `kernels`. Throws Error for a camera that looks nowhere.
+  /// `kernels`. Throws Error for a camera without a view direction and for a step so small
+  /// that the frame would never end.
   Framebuffer render(const ResolvedScene& scene, const RenderOptions& options,
                      RenderStatistics* statistics = nullptr) const;
 
