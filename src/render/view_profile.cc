@@ -33,7 +33,7 @@ Ray view_ray(const Camera& camera, const CameraAxes& axes, double aspect, double
 
 }  // namespace
 
-std::vector<ViewProfile> sample_view(const KernelSet& kernels, const Camera& camera, int width,
+std::vector<RayProfiles> sample_view(const KernelSet& kernels, const Camera& camera, int width,
                                      int height) {
   const CameraAxes axes = camera_axes(camera);
   const double aspect = static_cast<double>(width) / height;
@@ -43,7 +43,8 @@ std::vector<ViewProfile> sample_view(const KernelSet& kernels, const Camera& cam
   const auto jitter = [&] { return (random() + 0.5) / 4294967296.0; };
 
   std::vector<Point3d> points;
-  std::vector<double> sample_length;
+  RayProfiles rays;
+  rays.ray_begin.push_back(0);
   for (int i = 0; i < rays_an_axis * rays_an_axis; ++i) {
     const double s = (i % rays_an_axis + jitter()) / rays_an_axis;
     const double t = (i / rays_an_axis + jitter()) / rays_an_axis;
@@ -51,15 +52,16 @@ std::vector<ViewProfile> sample_view(const KernelSet& kernels, const Camera& cam
     const DepthRange range = clip(box, ray.origin, ray.direction);
     if (!(range.near < range.far)) continue;
     const double spacing = (range.far - range.near) / samples_per_ray;
-    sample_length.push_back(spacing * length(ray.direction));
+    rays.spacing.push_back(spacing * length(ray.direction));
     for (int k = 0; k < samples_per_ray; ++k) {
       points.push_back(ray.origin + (range.near + (k + jitter()) * spacing) * ray.direction);
     }
+    rays.ray_begin.push_back(points.size());
   }
 
   const std::size_t num_fields = kernels.fields.size();
   const std::vector<FieldSample> samples = probe(kernels, points);
-  std::vector<ViewProfile> profiles(num_fields, ViewProfile{samples_per_ray, {}, sample_length});
+  std::vector<RayProfiles> profiles(num_fields, rays);
   for (std::size_t f = 0; f < num_fields; ++f) {
     profiles[f].values.reserve(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {

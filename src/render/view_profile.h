@@ -5,12 +5,12 @@
 
 #include "field/kernel_set.h"
 #include "scene/camera.h"
-#include "scene/view_profile.h"
+#include "scene/fit.h"
 
 namespace motes {
 
 /// One profile a field, for the picture of that camera and size. Deterministic.
-std::vector<ViewProfile> sample_view(const KernelSet& kernels, const Camera& camera, int width,
+std::vector<RayProfiles> sample_view(const KernelSet& kernels, const Camera& camera, int width,
                                      int height);
 
 }  // namespace motes
