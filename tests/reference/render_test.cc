@@ -301,15 +301,35 @@ TEST(ReferenceRender, ShadesWithTheFieldsOwnNormal) {
   const double opacity = 1 - std::exp(-0.3 * 0.25);
   double red = 0, clear = 1;
   for (double z = -0.875; z < 1.2; z += 0.25) {
-    const double distance = std::abs(z - 0.125);
-    // Beyond the support there is no gradient either; only the box's corners are so far away here.
-    const bool has_normal = distance > 1e-9 && distance <= 1;
+    const bool has_normal = std::abs(z - 0.125) > 1e-9;
     red += clear * opacity * (0.25 + (has_normal ? 0.5 + 0.125 : 0));
     clear *= 1 - opacity;
   }
   const Image image = render(s.particles, s.scene);
   EXPECT_EQ(image.samples, 9U);
   EXPECT_NEAR(image.rgba[0], red, 1e-13);
+}
+
+TEST(ReferenceRender, TakesNoNormalWhereTheGradientIsSmall) {
+  // With a smallest radius of 1e-6, |grad Phi| 1e-6 = (d / 0.25) Phi 1e-6 is too small where d <
+  // 0.25: for the 2 samples at -0.125 and 0.125 of 8.
+  SmallScene s = small_scene({{0.5, 0.5, 0}, {0, 0, 0}});
+  s.scene.fields[0].radius = {1e-6F, 0.5F};
+  s.scene.render.lighting.enabled = true;
+  s.scene.render.lighting.ambient = 0;
+  s.scene.render.lighting.specular = 0;
+  s.scene.render.lighting.diffuse = 1;
+  const double clear = std::exp(-0.3 * 0.25);
+  const double without_normal = std::pow(clear, 3) - std::pow(clear, 5);
+  Image image = render(s.particles, s.scene);
+  EXPECT_NEAR(image.rgba[0], 1 - std::pow(clear, 8) - without_normal, 1e-12);
+
+  // In a corner of the box, beyond all supports.
+  s.scene.camera.eye = {0.95, 0.95, -10};
+  s.scene.camera.target = {0.95, 0.95, 0};
+  image = render(s.particles, s.scene);
+  EXPECT_EQ(image.rgba[0], 0);
+  EXPECT_NEAR(image.rgba[3], 1 - std::pow(clear, 8), 1e-12);
 }
 
 TEST(ReferenceRender, LeavingOutDistantKernelsChangesNothing) {
