@@ -1,0 +1,243 @@
+#include "support/random_scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "reference/field.h"
+
+namespace motes {
+namespace {
+
+/// Draws of one seed.
+class Draw {
+ public:
+  explicit Draw(std::uint32_t seed) : random_(seed) {}
+  double uniform(double low, double high) {
+    return low + (high - low) * static_cast<double>(random_()) / 4294967296.;
+  }
+  double log_uniform(double low, double high) {
+    return std::exp(uniform(std::log(low), std::log(high)));
+  }
+  /// 0 to n - 1.
+  int below(int n) { return static_cast<int>(uniform(0, n)); }
+  bool chance(double probability) { return uniform(0, 1) < probability; }
+  Vector3d in_cube() { return {uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)}; }
+  Vector3d direction() {
+    for (;;) {
+      const Vector3d v = in_cube();
+      if (length(v) > 0.1 && length(v) < 1) return normalize(v);
+    }
+  }
+  Color color() {
+    return {static_cast<float>(uniform(0, 1)), static_cast<float>(uniform(0, 1)),
+            static_cast<float>(uniform(0, 1))};
+  }
+
+ private:
+  std::mt19937 random_;  // its numbers are the same everywhere, unlike the distributions
+};
+
+/// Where the data lie, and how large they are.
+struct Extent {
+  Point3d center;
+  double size = 1;     ///< half the side of the cube that holds the particles
+  double spacing = 1;  ///< mean distance of neighbours
+};
+
+Extent draw_extent(Draw& draw, int num_particles) {
+  Extent extent;
+  extent.size = draw.log_uniform(0.01, 100);
+  if (draw.chance(0.1)) extent.size = draw.chance(0.5) ? 1e24 : 1e-10;
+  if (draw.chance(0.3)) {
+    extent.center =
+        Point3d{} + 1e4 * extent.size * draw.in_cube();  // 1e6 with features of some units
+  }
+  extent.spacing = 2 * extent.size / std::cbrt(num_particles);
+  return extent;
+}
+
+ParticleSet draw_particles(Draw& draw, const Extent& extent, int num_particles) {
+  std::vector<double> x, y, z;
+  const bool flat = draw.chance(0.1), coincident = draw.chance(0.1);
+  for (int i = 0; i < num_particles; ++i) {
+    Point3d p = extent.center + extent.size * draw.in_cube();
+    if (flat) p.y = extent.center.y;
+    if (coincident && i % 3 == 2) p = {x.back(), y.back(), z.back()};
+    x.push_back(p.x);
+    y.push_back(p.y);
+    z.push_back(p.z);
+  }
+  ParticleSet particles;
+  set_positions(particles, x, y, z);
+  return particles;
+}
+
+FieldSource draw_field(Draw& draw, const Extent& extent, int num_particles, int field,
+                       int num_fields, bool disjoint, double weight_scale) {
+  FieldSource source;
+  source.name = fmt::format("field{}", field);
+  source.kernel.support_factor = draw.chance(0.4) ? 2 : draw.uniform(1, 4);
+  source.kernel.kernel_scale = draw.chance(0.5) ? 1 : draw.log_uniform(0.1, 10);
+  source.normalise = draw.chance(0.3);
+  const double share = draw.uniform(0.2, 1);
+  for (int i = 0; i < num_particles; ++i) {
+    const bool taken = disjoint ? i % num_fields == field : draw.chance(share);
+    if (taken) source.index.push_back(static_cast<std::uint32_t>(i));
+  }
+  if (source.index.empty()) source.index = {0};
+
+  const double mean_radius = extent.spacing * draw.log_uniform(0.15, 0.8);
+  const double spread = draw.chance(0.2) ? 5 : 1.5;
+  const std::size_t num_radii = draw.chance(0.4) ? 1 : source.index.size();
+  for (std::size_t i = 0; i < num_radii; ++i) {
+    source.radius.push_back(static_cast<float>(mean_radius * draw.log_uniform(1 / spread, spread)));
+  }
+  const int kind = draw.below(3);  // all alike, positive, of both signs
+  const std::size_t num_weights = kind == 0 ? 1 : source.index.size();
+  for (std::size_t i = 0; i < num_weights; ++i) {
+    const double sign = kind == 2 && draw.chance(0.4) ? -1 : 1;
+    source.weight.push_back(static_cast<float>(sign * weight_scale * draw.uniform(0.3, 1.5)));
+  }
+  return source;
+}
+
+/// The largest sum of absolute kernels at some of the field's particles: what the values can be.
+double typical_value(const ParticleSet& particles, const FieldSource& source) {
+  const auto kernels = reference::particle_kernels(particles, source);
+  double typical = 0;
+  for (std::size_t i = 0; i < kernels.size(); i += 1 + kernels.size() / 30) {
+    typical = std::max(typical, reference::evaluate_field(kernels, kernels[i].center).absolute);
+  }
+  return typical;
+}
+
+/// Points over the values that the field takes, no steeper than float values can follow.
+TransferFunction draw_transfer_function(Draw& draw, double typical, double opaque_length) {
+  TransferFunction f;
+  f.log_scale = draw.chance(0.3);
+  const int kinds[] = {1, 2, 2, 3, 6, 20, 40};
+  const int num_points = kinds[draw.below(7)];
+  const double low = f.log_scale ? -2.5 : draw.uniform(-0.3, 0.3);
+  const double high = f.log_scale ? 0.2 : low + draw.uniform(0.5, 1);
+  const double highest = draw.log_uniform(0.2, 10) / opaque_length;
+  const bool clear_start = draw.chance(0.7);
+  for (int i = 0; i < num_points; ++i) {
+    const double t = num_points == 1 ? 0.5 : static_cast<double>(i) / (num_points - 1);
+    const double at = low + t * (high - low);
+    const double ramp = num_points > 6 ? draw.uniform(0.8, 1) * t : draw.uniform(0, 1);
+    const bool clear = clear_start && i <= num_points / 4 && num_points > 1;
+    f.points.push_back({.value = typical * (f.log_scale ? std::pow(10, at) : at),
+                        .color = draw.color(),
+                        .extinction = clear ? 0 : highest * ramp});
+  }
+  return f;
+}
+
+const char* draw_camera(Draw& draw, const Extent& extent, Camera& camera) {
+  camera.fov_degrees = draw.uniform(20, 60);
+  camera.target = extent.center + 0.2 * extent.size * draw.in_cube();
+  const Vector3d from = draw.direction();
+  camera.up = draw.direction();
+  while (length(cross(from, camera.up)) < 0.1) camera.up = draw.direction();
+  const double distance = extent.size * draw.uniform(2, 5);
+  camera.eye = camera.target + distance * from;
+  switch (draw.below(7)) {
+    case 0:
+      return "outside";
+    case 1:
+      camera.eye = camera.target + extent.size * draw.uniform(0.01, 1) * from;
+      return "inside";
+    case 2:
+      camera.orthographic_height = extent.size * draw.uniform(0.5, 3);
+      return "orthographic";
+    case 3:
+      camera.eye = camera.target + 0.5 * extent.size * from;
+      camera.orthographic_height = extent.size * draw.uniform(0.5, 3);
+      return "orthographic inside";
+    case 4: {
+      // The image's middle looks exactly along an axis.
+      const int axis = draw.below(3);
+      camera.target = extent.center;
+      camera.eye = extent.center;
+      camera.eye[axis] += draw.chance(0.5) ? distance : -distance;
+      camera.up = {};
+      camera.up[(axis + 1) % 3] = 1;
+      if (draw.chance(0.3)) camera.orthographic_height = 2 * extent.size;
+      return "along an axis";
+    }
+    case 5:
+      camera.eye = camera.target + extent.size * draw.uniform(0.1, 1.5) * from;
+      camera.fov_degrees = draw.uniform(90, 150);
+      return "wide angle";
+    default:
+      // The data lie to the side or behind, partly.
+      camera.eye = camera.target + extent.size * draw.uniform(0.5, 1.5) * from;
+      camera.target = camera.eye + extent.size * draw.direction();
+      while (length(cross(camera.target - camera.eye, camera.up)) < 0.1 * extent.size) {
+        camera.up = draw.direction();
+      }
+      return "looking elsewhere";
+  }
+}
+
+Lighting draw_lighting(Draw& draw) {
+  Lighting lighting;
+  lighting.enabled = draw.chance(0.5);
+  lighting.ambient = draw.uniform(0, 0.5);
+  lighting.diffuse = draw.uniform(0, 1);
+  lighting.specular = draw.chance(0.3) ? 0 : draw.uniform(0, 0.4);
+  lighting.shininess = draw.log_uniform(1, 60);
+  if (draw.chance(0.4)) lighting.direction = 3. * draw.direction();
+  return lighting;
+}
+
+}  // namespace
+
+RandomScene random_scene(std::uint32_t seed) {
+  Draw draw(seed);
+  RandomScene result;
+  ResolvedScene& scene = result.scene;
+  const auto num_particles =
+      static_cast<int>(draw.chance(0.2) ? draw.uniform(1, 10) : draw.log_uniform(10, 400));
+  const Extent extent = draw_extent(draw, num_particles);
+  result.particles = draw_particles(draw, extent, num_particles);
+
+  const int num_fields = draw.chance(0.5) ? 1 : 2 + draw.below(7);
+  const bool disjoint = draw.chance(0.5);
+  const double weight_scale = draw.chance(0.7) ? 1 : draw.log_uniform(1e-6, 1e6);
+  double smallest_support = 4 * extent.size;
+  for (int f = 0; f < num_fields; ++f) {
+    FieldSource source =
+        draw_field(draw, extent, num_particles, f, num_fields, disjoint, weight_scale);
+    const double typical = typical_value(result.particles, source);
+    scene.transfer_functions.push_back(
+        draw_transfer_function(draw, typical, extent.size * draw.uniform(0.5, 2)));
+    const float radius = *std::min_element(source.radius.begin(), source.radius.end());
+    smallest_support = std::min(smallest_support, radius * source.kernel.support_factor);
+    scene.fields.push_back(std::move(source));
+  }
+
+  const char* view = draw_camera(draw, extent, scene.camera);
+  // Some samples across a kernel, but no more than some hundred a ray.
+  scene.step_size = std::max(smallest_support * draw.log_uniform(0.1, 1.5), extent.size / 40);
+  const std::pair<int, int> sizes[] = {{37, 23}, {16, 16}, {19, 45}, {1, 1}, {33, 3}};
+  std::tie(scene.render.width, scene.render.height) = sizes[draw.chance(0.6) ? 0 : draw.below(5)];
+  const double terminations[] = {0.97, 0.97, 0.5, 0.9, 1};
+  scene.render.termination_opacity = terminations[draw.below(5)];
+  scene.render.lighting = draw_lighting(draw);
+  result.description = fmt::format(
+      "seed {}: {} particles in {} fields, extent {:.3g} around ({:.3g}, {:.3g}, {:.3g}), view {}, "
+      "{}x{}, step {:.3g}, termination {}, {}",
+      seed, num_particles, num_fields, extent.size, extent.center.x, extent.center.y,
+      extent.center.z, view, scene.render.width, scene.render.height, scene.step_size,
+      scene.render.termination_opacity, scene.render.lighting.enabled ? "lit" : "unlit");
+  return result;
+}
+
+}  // namespace motes
