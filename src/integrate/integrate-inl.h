@@ -89,13 +89,14 @@ HWY_INLINE Lanes table_value(LaneTag d, const Classifier& c, int i, const TableP
                     look_up(d, c.base[i], c.num_segments, place.segment));
 }
 
-/// The classifier's argument for the buffer's values.
+/// The classifier's argument for the buffer's values. Finite also where there is no logarithm, so
+/// that it lies above a transparent_below of -infinity and a flat segment makes no NaN of it.
 HWY_INLINE Lanes argument_of(LaneTag d, const Classifier& c, Lanes value) {
   if (!c.log_scale) return value;
   const Lanes tiny = hn::Set(d, std::numeric_limits<float>::min());
   const Lanes logarithm = hn::Add(hn::Log10(d, hn::Max(value, tiny)), hn::Set(d, c.log_shift));
   return hn::IfThenElse(hn::Ge(value, tiny), logarithm,
-                        hn::Set(d, -std::numeric_limits<float>::infinity()));
+                        hn::Set(d, std::numeric_limits<float>::lowest()));
 }
 
 /// x^power for x in [0, 1], power > 0.
