@@ -113,7 +113,8 @@ TEST(ReferenceField, GradientIsTheDerivative) {
 
 TEST(ReferenceKernels, ComeFromPositionsRadiiWeightsAndScale) {
   ParticleSet particles;
-  set_positions(particles, {1e6, 1e6 + 0.015625, 1e6}, {0, 0, 1}, {0, 0, 0});
+  const std::vector<double> x{1e6, 1e6 + 0.015625, 1e6}, y{0, 0, 1}, z{0, 0, 0};
+  set_positions(particles, x, y, z);
   FieldSource source;
   source.kernel = {.support_factor = 3, .kernel_scale = 2};
   source.index = {1, 2};
