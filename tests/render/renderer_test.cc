@@ -1,0 +1,182 @@
+#include "render/renderer.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "core/error.h"
+
+namespace motes {
+namespace {
+
+ParticleSet particles_at(const std::vector<Point3d>& points) {
+  std::vector<double> x, y, z;
+  for (const Point3d& p : points) {
+    x.push_back(p.x);
+    y.push_back(p.y);
+    z.push_back(p.z);
+  }
+  ParticleSet particles;
+  set_positions(particles, x, y, z);
+  return particles;
+}
+
+FieldSource field_of_all(const ParticleSet& particles, float radius, float weight,
+                         const Kernel& kernel) {
+  FieldSource field;
+  field.name = "all";
+  field.kernel = kernel;
+  for (std::uint32_t i = 0; i < particles.size(); ++i) field.index.push_back(i);
+  field.radius = {radius};
+  field.weight = {weight};
+  return field;
+}
+
+/// Looks at the origin from z = 20; an odd size, so that the middle pixel's ray is the axis.
+ResolvedScene scene_along_z(double step, const TransferFunction& function) {
+  ResolvedScene scene;
+  scene.camera.eye = {0, 0, 20};
+  scene.camera.target = {0, 0, 0};
+  scene.step_size = step;
+  scene.render.width = scene.render.height = 33;
+  scene.render.lighting.enabled = false;
+  scene.render.termination_opacity = 1;
+  scene.transfer_functions = {function};
+  return scene;
+}
+
+double middle_alpha(const Framebuffer& image) {
+  return image.pixel(image.width / 2, image.height / 2)[3];
+}
+
+ParticleSet random_particles(std::size_t n, double size) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> coordinate(-size, size);
+  std::vector<Point3d> points;
+  for (std::size_t i = 0; i < n; ++i) {
+    points.push_back({coordinate(random), coordinate(random), coordinate(random)});
+  }
+  return particles_at(points);
+}
+
+const TransferFunction ramp{{{0.1, {0, 0, 1}, 0}, {1.5, {1, 1, 0}, 1.5}}, false};
+
+// The integral of a Gaussian truncated at sigma along a ray through its centre is
+// sqrt(2 pi) r erf(sigma / sqrt 2); with extinction = value it is the ray's optical depth.
+TEST(ClosedForm, IntegralOfALoneGaussianAlongARay) {
+  const ParticleSet particles = particles_at({{0, 0, 0}});
+  const TransferFunction identity{{{0, {1, 1, 1}, 0}, {10, {1, 1, 1}, 10}}, false};
+  for (const double sigma : {2.0, 3.0, 6.0}) {
+    for (const float radius : {0.5f, 1.5f}) {
+      const Renderer renderer(particles, {field_of_all(particles, radius, 0.4f, {sigma, 1.5})});
+      const Framebuffer image = renderer.render(scene_along_z(radius / 200, identity), {});
+      const double depth = 1.5 * 0.4f * std::sqrt(2 * std::numbers::pi) * radius *
+                           std::erf(sigma / std::numbers::sqrt2);
+      // The truncation's jump is sampled to half a step at each end.
+      const double jump = 0.6 * std::exp(-sigma * sigma / 2) * radius / 200;
+      EXPECT_NEAR(middle_alpha(image), 1 - std::exp(-depth), jump + 2e-6) << sigma << " " << radius;
+    }
+  }
+}
+
+TEST(ClosedForm, OpacityOfAHomogeneousSlab) {
+  // Two particles at the ends of the box; constant extinction whatever the value.
+  const ParticleSet particles = particles_at({{-3, -3, -3}, {3, 3, 3}});
+  for (const double extinction : {0.02, 0.3, 5.0}) {
+    const TransferFunction constant{{{0, {0.5f, 0.25f, 1}, extinction}}, false};
+    const Renderer renderer(particles, {field_of_all(particles, 0.5f, 1, {2, 1})});
+    const Framebuffer image = renderer.render(scene_along_z(0.01, constant), {});
+    const double alpha = 1 - std::exp(-extinction * 8);  // the box: 3 + 3 + 2 * sigma * radius
+    EXPECT_NEAR(middle_alpha(image), alpha, 2e-6 + 0.01 * extinction * (1 - alpha));
+    EXPECT_NEAR(image.pixel(16, 16)[0], 0.5 * middle_alpha(image), 1e-6);
+  }
+}
+
+TEST(Renderer, ChangesSigmaAndKappaWithoutTouchingTheTree) {
+  const ParticleSet particles = random_particles(500, 4);
+  Renderer changed(particles, {field_of_all(particles, 0.5f, 1, {2, 1})});
+  const Bvh::Node* const nodes = changed.kernels().bvh.nodes.data();
+  changed.set_kernel(0, {3, 0.7});
+  EXPECT_EQ(changed.kernels().bvh.nodes.data(), nodes);
+  const Renderer fresh(particles, {field_of_all(particles, 0.5f, 1, {3, 0.7})});
+  const ResolvedScene scene = scene_along_z(0.2, ramp);
+  EXPECT_EQ(changed.render(scene, {}), fresh.render(scene, {}));
+}
+
+TEST(Renderer, OnePassGivesThePictureOfManyPasses) {
+  const ParticleSet particles = random_particles(500, 4);
+  const Renderer renderer(particles, {field_of_all(particles, 0.5f, 1, {2, 1})});
+  ResolvedScene scene = scene_along_z(0.05, ramp);
+  scene.render.lighting.enabled = true;
+  const Framebuffer many = renderer.render(scene, {});
+  RenderOptions options;
+  options.samples_per_pass = 0;
+  const Framebuffer one = renderer.render(scene, options);
+  double visible = 0;
+  for (std::size_t i = 0; i < many.rgba.size(); ++i) {
+    ASSERT_NEAR(one.rgba[i], many.rgba[i], 5e-6);
+    visible = std::max(visible, static_cast<double>(many.rgba[i]));
+  }
+  EXPECT_GT(visible, 0.5);
+}
+
+TEST(Renderer, CountsTheSamplesInTheBox) {
+  const ParticleSet particles = particles_at({{0, 0, 0}});
+  const Renderer renderer(particles, {field_of_all(particles, 1, 1, {2, 1})});
+  ResolvedScene scene = scene_along_z(1, ramp);
+  scene.camera.orthographic_height = 1;  // all rays go through the box, 4 deep
+  RenderStatistics statistics;
+  renderer.render(scene, {}, &statistics);
+  EXPECT_EQ(statistics.samples, 4u * 33 * 33);
+  EXPECT_GT(statistics.kernel_evaluations, 0u);
+}
+
+TEST(Renderer, RendersNothingWhereThereIsNothing) {
+  const ParticleSet particles = particles_at({{0, 0, 0}});
+  const Renderer renderer(particles, {field_of_all(particles, 1, 1, {2, 1})});
+  ResolvedScene scene = scene_along_z(0.1, ramp);
+  scene.camera.target = {0, 0, 40};  // looks away
+  EXPECT_EQ(renderer.render(scene, {}), Framebuffer(33, 33));
+}
+
+TEST(Renderer, RefusesStepsThatNeverEnd) {
+  const ParticleSet particles = particles_at({{0, 0, 0}});
+  const Renderer renderer(particles, {field_of_all(particles, 1, 1, {2, 1})});
+  EXPECT_THROW(renderer.render(scene_along_z(1e-9, ramp), {}), Error);
+  ResolvedScene far = scene_along_z(0.1, ramp);
+  far.camera.eye = {0, 0, 1e17};
+  EXPECT_THROW(renderer.render(far, {}), Error);
+}
+
+TEST(Renderer, SurvivesExtremeScales) {
+  // Centimetres of a galaxy cluster with masses in grammes; and the same tiny.
+  for (const double scale : {1e24, 1e-24}) {
+    std::vector<Point3d> points;
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> coordinate(-4, 4);
+    for (int i = 0; i < 200; ++i) {
+      points.push_back(
+          {scale * coordinate(random), scale * coordinate(random), scale * coordinate(random)});
+    }
+    const ParticleSet particles = particles_at(points);
+    FieldSource field = field_of_all(particles, static_cast<float>(scale), 1e33f, {2, 1});
+    field.normalise = scale > 1;
+    const Renderer renderer(particles, {field});
+    const double unit = field.normalise ? 1e33 / (scale * scale * scale) : 1e33;
+    TransferFunction function = ramp;
+    for (TransferFunction::Point& p : function.points) {
+      p.value *= unit;
+      p.extinction /= scale;
+    }
+    ResolvedScene scene = scene_along_z(0.1 * scale, function);
+    scene.camera.eye = {0, 0, 20 * scale};
+    const double alpha = middle_alpha(renderer.render(scene, {}));
+    EXPECT_GT(alpha, 0.01) << scale;
+    EXPECT_LE(alpha, 1) << scale;
+  }
+}
+
+}  // namespace
+}  // namespace motes
