@@ -8,6 +8,8 @@ const std::vector<Format>& formats() {
   static const std::vector<Format> table{
       hdf5_format(),
       lammps_dump_format(),
+      gro_format(),
+      lammps_data_format(),
       xyz_format(),
   };
   return table;

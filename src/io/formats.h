@@ -5,7 +5,9 @@
 
 namespace motes {
 
+const Format& gro_format();
 const Format& hdf5_format();
+const Format& lammps_data_format();
 const Format& lammps_dump_format();
 const Format& xyz_format();
 

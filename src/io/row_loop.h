@@ -1,7 +1,6 @@
 // Calls a function for each row of a block of text, on all threads.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -14,7 +13,7 @@
 
 namespace motes {
 
-/// A part of a block: whole lines, and where its rows (lines that are not blank) come in the block.
+/// A part of a block: whole lines, and where its rows come in the block.
 struct RowChunk {
   TextBlock block;
   std::size_t first_row = 0;
@@ -39,7 +38,7 @@ void for_each_row(const RowChunk& chunk, F&& f) {
   for (; p != end; ++line) {
     const void* found = std::memchr(p, '\n', static_cast<std::size_t>(end - p));
     const char* const newline = found == nullptr ? end : static_cast<const char*>(found);
-    if (!std::all_of(p, newline, is_blank)) f(row++, p, newline, line);
+    if (is_row(p, newline)) f(row++, p, newline, line);
     p = newline == end ? end : newline + 1;
   }
 }

@@ -36,9 +36,9 @@ struct Column {
 
 enum class RowWidth { exact, at_least };
 
-/// Parses the lines of `block` that are not blank into `columns`, and reports progress. Throws
-/// Error with the line if there are not exactly `num_rows` of them, or a row has too few columns
-/// (or, if `width` is exact, too many) or another thing than its column's kind.
+/// Parses the rows of `block` (lines but blank ones and comments) into `columns`, and reports
+/// progress. Throws Error with the line if there are not exactly `num_rows` of them, or a row has
+/// too few columns (or, if `width` is exact, too many) or another thing than its column's kind.
 void parse_table(const std::filesystem::path& file, TextBlock block, std::size_t num_rows,
                  RowWidth width, std::vector<Column>& columns, const ReadOptions& options);
 

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cstdlib>
@@ -142,8 +143,9 @@ std::string_view LineReader::next(std::string_view expected) {
     throw TextEnds(file_, next_line_, fmt::format("the file ends here; expected {}", expected));
   }
   const std::string_view line = peek();
-  const std::size_t newline = text_.find('\n', position_ + line.size());
-  position_ = newline == std::string_view::npos ? text_.size() : newline + 1;
+  position_ += line.size();
+  // (the line's end may be "\r\n", and the last line may have none)
+  position_ = std::min(text_.find('\n', position_), text_.size() - 1) + 1;
   ++next_line_;
   return line;
 }
@@ -164,10 +166,28 @@ void LineReader::skip(std::uint64_t count, std::string_view what) {
   }
   position_ = static_cast<std::size_t>(p - text_.data());
   next_line_ += skipped;
-  if (skipped < count) {
-    throw TextEnds(file_, next_line_,
-                   fmt::format("the file ends after {} of {} {}", skipped, count, what));
+  if (skipped < count) fail_short(skipped, count, what);
+}
+
+void LineReader::fail_short(std::uint64_t found, std::uint64_t count, std::string_view what) {
+  throw TextEnds(file_, next_line_,
+                 fmt::format("the file ends after {} of {} {}", found, count, what));
+}
+
+void LineReader::skip_rest() {
+  if (!complete_) throw TextEnds(file_, next_line_, "the file ends here");
+  while (position_ != text_.size()) next("");
+}
+
+TextBlock LineReader::take_rows(std::uint64_t count, std::string_view what) {
+  const TextBlock start = rest();
+  const std::size_t begin = position_;
+  for (std::uint64_t found = 0; found < count;) {
+    if (position_ == text_.size()) fail_short(found, count, what);
+    const std::string_view line = next("");
+    if (is_row(line.data(), line.data() + line.size())) ++found;
   }
+  return {start.text.substr(0, position_ - begin), start.first_line};
 }
 
 bool LineReader::skip_blank_lines() {

@@ -30,6 +30,12 @@ std::optional<std::int64_t> to_integer(std::string_view token);
 /// `text` without blanks at either end.
 std::string_view trim(std::string_view text);
 
+/// Whether a line of a table is a row: neither blank nor a comment ("# ...").
+inline bool is_row(const char* begin, const char* end) {
+  while (begin != end && is_blank(*begin)) ++begin;
+  return begin != end && *begin != '#';
+}
+
 /// The next token of `text`, which is cut off its front; "" at the end.
 std::string_view next_token(std::string_view& text);
 std::vector<std::string_view> split_tokens(std::string_view text);
@@ -58,6 +64,11 @@ class LineReader {
   std::string_view next_filled(std::string_view expected);
   /// Skips `count` lines; throws TextEnds if there are fewer, "ends after K of COUNT WHAT".
   void skip(std::uint64_t count, std::string_view what);
+  /// Skips to the end of the file; throws TextEnds if the text ends before.
+  void skip_rest();
+  /// The next `count` rows, with the lines before and between them that are none. Throws TextEnds
+  /// as skip() does.
+  TextBlock take_rows(std::uint64_t count, std::string_view what);
   /// Skips blank lines; false if the file has nothing else. Throws TextEnds if the text ends but
   /// not the file.
   bool skip_blank_lines();
@@ -80,6 +91,8 @@ class LineReader {
   std::size_t position_ = 0;
   std::uint64_t next_line_;
   bool complete_;
+
+  [[noreturn]] void fail_short(std::uint64_t found, std::uint64_t count, std::string_view what);
 };
 
 }  // namespace motes

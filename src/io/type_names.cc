@@ -13,21 +13,32 @@ namespace motes {
 
 namespace {
 
-std::optional<std::string> given_name(const std::string& type, const TypeHints& hints,
-                                      const ReadOptions& options) {
-  if (const auto number = to_integer(type)) {
-    for (const auto& [key, name] : options.types) {
-      if (key == *number) return name;
-    }
+std::optional<std::string> name_of_user(const std::string& type, const ReadOptions& options) {
+  const auto number = to_integer(type);
+  if (!number) return std::nullopt;
+  for (const auto& [key, name] : options.types) {
+    if (key == *number) return name;
   }
-  const auto label = hints.labels.find(type);
-  if (label != hints.labels.end()) return label->second;
   return std::nullopt;
+}
+
+const std::string* label_of(const std::string& type, const TypeHints& hints) {
+  const auto label = hints.labels.find(type);
+  return label == hints.labels.end() ? nullptr : &label->second;
+}
+
+/// Whether the masses are those of elements: in reduced units they are mostly 1, but nowhere near
+/// another element's.
+bool in_atomic_units(const TypeHints& hints) {
+  return std::any_of(hints.masses.begin(), hints.masses.end(), [](const auto& mass) {
+    return mass.second != 1 && element_by_mass(mass.second) != nullptr;
+  });
 }
 
 const Element* element_of_mass(const std::string& type, const TypeHints& hints) {
   const auto mass = hints.masses.find(type);
-  return mass == hints.masses.end() ? nullptr : element_by_mass(mass->second);
+  if (mass == hints.masses.end() || !in_atomic_units(hints)) return nullptr;
+  return element_by_mass(mass->second);
 }
 
 /// Indices of `types` in the order of their numbers; those that are words come last.
@@ -51,9 +62,15 @@ void name_types(const std::filesystem::path& file, const Column& types, const Ty
   for (const std::size_t i : sorted_types(types.words)) {
     const std::string& type = types.words[i];
     std::string name = type;
-    if (const auto given = given_name(type, hints, options)) {
+    const std::string* label = label_of(type, hints);
+    const Element* element = element_of_mass(type, hints);
+    // (a carbon that the file calls CA must not become calcium)
+    const bool agree = label != nullptr && (element == nullptr || find_element(*label) == element);
+    if (const auto given = name_of_user(type, options)) {
       name = *given;
-    } else if (const Element* element = element_of_mass(type, hints)) {
+    } else if (agree) {
+      name = *label;
+    } else if (element != nullptr) {
       name = element->symbol;
       guesses += fmt::format("{}{}={}", guesses.empty() ? "" : ",", printable(type), name);
     }

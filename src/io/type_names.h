@@ -17,8 +17,8 @@ struct TypeHints {
 };
 
 /// Fills species and species_names of `particles` from a column of words, types sorted by number.
-/// A type is named by the first of: options.types; the file's label; the element of its mass, with
-/// a warning; its own number.
+/// A type is named by the first of: options.types; the file's label, if it names the element that
+/// the mass says, or the mass says none; the element of its mass, with a warning; its own number.
 void name_types(const std::filesystem::path& file, const Column& types, const TypeHints& hints,
                 const ReadOptions& options, ParticleSet& particles);
 

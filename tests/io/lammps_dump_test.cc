@@ -5,8 +5,7 @@
 #include <cmath>
 
 #include "core/error.h"
-#include "io/reader.h"
-#include "support/temporary_file.h"
+#include "io/text_fixture.h"
 
 namespace motes {
 namespace {
@@ -18,30 +17,10 @@ using testing::ThrowsMessage;
 const std::string orthogonal_head =
     "ITEM: TIMESTEP\n7\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS pp ff pp\n-1 9\n0 20\n0 30\n";
 
-ParticleSet read_text(const std::string& text, const ReadOptions& options = {},
-                      std::size_t frame = 0) {
-  const TemporaryFile file("a.dump", text);
-  return open_trajectory(file.path(), options)->read_frame(frame);
-}
-
-std::vector<std::string> species_of(const ParticleSet& particles) {
-  std::vector<std::string> names;
-  for (const std::uint16_t index : particles.species) {
-    names.push_back(particles.species_names[index]);
-  }
-  return names;
-}
-
-void expect_position(const ParticleSet& particles, std::size_t i, Point3d expected) {
-  EXPECT_NEAR(particles.position(i).x, expected.x, 1e-5);
-  EXPECT_NEAR(particles.position(i).y, expected.y, 1e-5);
-  EXPECT_NEAR(particles.position(i).z, expected.z, 1e-5);
-}
-
 TEST(LammpsDump, ReadsColumnsInAnyOrder) {
-  const auto particles = read_text(orthogonal_head +
-                                   "ITEM: ATOMS z vx type y id x c_s[1]\n"
-                                   "3 0.5 2 2 11 1 nan\n6 -0.5 1 5 9 4 1e-3\n");
+  const auto particles = read_text("a.dump", orthogonal_head +
+                                                 "ITEM: ATOMS z vx type y id x c_s[1]\n"
+                                                 "3 0.5 2 2 11 1 nan\n6 -0.5 1 5 9 4 1e-3\n");
   ASSERT_EQ(particles.size(), 2u);
   expect_position(particles, 0, {1, 2, 3});
   expect_position(particles, 1, {4, 5, 6});
@@ -61,18 +40,20 @@ TEST(LammpsDump, ReadsColumnsInAnyOrder) {
 }
 
 TEST(LammpsDump, PrefersWrappedPositionsAndLengths) {
-  const auto particles = read_text(orthogonal_head +
-                                   "ITEM: ATOMS xsu ysu zsu xu yu zu xs ys zs x y z\n"
-                                   "9 9 9 8 8 8 7 7 7 1 2 3\n9 9 9 8 8 8 7 7 7 4 5 6\n");
+  const auto particles =
+      read_text("a.dump", orthogonal_head +
+                              "ITEM: ATOMS xsu ysu zsu xu yu zu xs ys zs x y z\n"
+                              "9 9 9 8 8 8 7 7 7 1 2 3\n9 9 9 8 8 8 7 7 7 4 5 6\n");
   expect_position(particles, 1, {4, 5, 6});
   EXPECT_TRUE(particles.properties.empty());
 }
 
 TEST(LammpsDump, ScaledPositionsAreFractionsOfTheTiltedCell) {
   // Cell (10,0,0), (2,10,0), (-3,1,10) from (0,0,0), as the bounds of its bounding box.
-  const auto particles = read_text(
-      "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS xy xz yz pp pp pp\n"
-      "-3 12 2\n0 11 -3\n0 10 1\nITEM: ATOMS xs ys zs\n0.5 0.5 0.5\n");
+  const auto particles =
+      read_text("a.dump",
+                "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS xy xz yz pp pp pp\n"
+                "-3 12 2\n0 11 -3\n0 10 1\nITEM: ATOMS xs ys zs\n0.5 0.5 0.5\n");
   ASSERT_TRUE(particles.cell);
   EXPECT_EQ(particles.cell->origin, Point3d(0, 0, 0));
   EXPECT_EQ(particles.cell->vectors[0], Vector3d(10, 0, 0));
@@ -83,6 +64,7 @@ TEST(LammpsDump, ScaledPositionsAreFractionsOfTheTiltedCell) {
 
 TEST(LammpsDump, ReadsGeneralBoxes) {
   const auto particles = read_text(
+      "a.dump",
       "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS abc origin pp pp fs\n"
       "0 2 0 1\n-3 0 0 2\n0 0 4 3\nITEM: ATOMS xs ys zs\n0.5 0.5 0.5\n");
   EXPECT_EQ(particles.cell->vectors[1], Vector3d(-3, 0, 0));
@@ -96,19 +78,20 @@ TEST(LammpsDump, NamesTypesFromTheUserTheElementsOrTheMasses) {
   Warnings warnings;
   ReadOptions options;
   options.warnings = &warnings;
-  EXPECT_THAT(read_text(masses, options).species_names, ElementsAre("Si", "O"));
+  EXPECT_THAT(read_text("a.dump", masses, options).species_names, ElementsAre("Si", "O"));
   EXPECT_THAT(warnings.lines(), ElementsAre(HasSubstr("named after their masses: 1=Si,2=O")));
   options.types = {{1, "A"}};
-  EXPECT_THAT(read_text(masses, options).species_names, ElementsAre("A", "O"));
+  EXPECT_THAT(read_text("a.dump", masses, options).species_names, ElementsAre("A", "O"));
 
   const std::string elements =
       orthogonal_head + "ITEM: ATOMS type element x y z\n1 Kr 1 1 1\n2 Ar 2 2 2\n";
-  EXPECT_THAT(read_text(elements).species_names, ElementsAre("Kr", "Ar"));
-  EXPECT_THAT(read_text(elements, options).species_names, ElementsAre("A", "2"));
+  EXPECT_THAT(read_text("a.dump", elements).species_names, ElementsAre("Kr", "Ar"));
+  EXPECT_THAT(read_text("a.dump", elements, options).species_names, ElementsAre("A", "2"));
 }
 
 TEST(LammpsDump, ReadsUnitsTimeCrLfAndTrailingBlanks) {
   const auto particles = read_text(
+      "a.dump",
       "ITEM: UNITS\r\nlj\r\nITEM: TIME\r\n2.5\r\nITEM: TIMESTEP\r\n7\r\nITEM: NUMBER OF ATOMS\r\n"
       "1\r\nITEM: BOX BOUNDS\r\n0 1 \r\n0 1\r\n0 1\r\nITEM: ATOMS x y z \r\n1 2 3 \r\n\r\n");
   EXPECT_EQ(particles.time, 2.5);
@@ -151,16 +134,10 @@ TEST(LammpsDump, ACutFrameLeavesTheFramesBeforeIt) {
               ThrowsMessage<Error>(HasSubstr("a.dump:33: the file ends after 1 of 2 atoms")));
 }
 
-struct BadText {
-  const char* name;
-  std::string text;
-  std::string message;
-};
-
 class BadLammpsDump : public testing::TestWithParam<BadText> {};
 
 TEST_P(BadLammpsDump, IsRefusedWithTheLine) {
-  EXPECT_THAT([&] { read_text(GetParam().text); },
+  EXPECT_THAT([&] { read_text("a.dump", GetParam().text); },
               ThrowsMessage<Error>(HasSubstr(GetParam().message)));
 }
 
