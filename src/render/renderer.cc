@@ -1,6 +1,7 @@
 #include "render/renderer.h"
 
 #include <fmt/format.h>
+#include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
@@ -132,6 +133,10 @@ Framebuffer Renderer::render(const ResolvedScene& scene, const RenderOptions& op
     const int rows = (context.height + tile_size - 1) / tile_size;
     std::atomic<int> done{0};
     std::mutex progress_mutex;
+    // TBB starts no more threads than the machine has, unless it is told to.
+    const tbb::global_control parallelism(
+        tbb::global_control::max_allowed_parallelism,
+        static_cast<std::size_t>(std::max(threads, tbb::info::default_concurrency())));
     tbb::task_arena arena(threads);
     arena.execute([&] {
       tbb::parallel_for(0, columns * rows, [&](int i) {
