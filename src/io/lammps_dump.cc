@@ -280,7 +280,7 @@ class LammpsDump : public TextTrajectory {
         column.kind = Column::Kind::integer;
       } else if (name == species) {
         column.kind = Column::Kind::word;
-      } else if (to_real(token)) {
+      } else if (token.empty() || to_real(token)) {
         column.kind = Column::Kind::single;
       }
       columns.push_back(std::move(column));
