@@ -28,6 +28,13 @@ double quantile(std::vector<float>& values, double fraction) {
   return *at;
 }
 
+/// Calls `look` with radii of the field's particles: all, or evenly many.
+template <class F>
+void for_some_radii(const FieldSource& field, F&& look) {
+  const std::size_t stride = 1 + field.index.size() / radii_looked_at;
+  for (std::size_t i = 0; i < field.index.size(); i += stride) look(field.radius_of(i));
+}
+
 struct Range {
   double low = 0, high = 1;
   bool log_scale = false, both_signs = false;
@@ -111,13 +118,21 @@ TransferFunction one_color(const Color& color, const Range& range, double extinc
 
 }  // namespace
 
+Bounds3d visible_box(const std::vector<FieldSource>& fields, const Bounds3d& centers) {
+  std::vector<float> supports;
+  for (const FieldSource& field : fields) {
+    for_some_radii(field, [&](float radius) {
+      supports.push_back(static_cast<float>(field.kernel.support_factor * radius));
+    });
+  }
+  return centers.extended(quantile(supports, 0.5));
+}
+
 double default_step_size(const std::vector<FieldSource>& fields, const Bounds3d& box) {
   std::vector<float> radii;
   for (const FieldSource& field : fields) {
-    const std::size_t stride = 1 + field.radius.size() / radii_looked_at;
-    for (std::size_t i = 0; i < field.radius.size(); i += stride) radii.push_back(field.radius[i]);
+    for_some_radii(field, [&radii](float radius) { radii.push_back(radius); });
   }
-  if (radii.empty()) return 1;
   return std::max(0.5 * quantile(radii, 0.05), length(box.diagonal()) / max_samples);
 }
 

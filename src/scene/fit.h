@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <span>
 #include <vector>
 
 #include "core/vec.h"
@@ -16,6 +15,10 @@ namespace motes {
 /// its largest face is seen; y is up, or z where the view is mostly along y or x. Precondition:
 /// `box` is not empty. Throws Error as camera_axes() does.
 Camera fit_camera(const Scene& scene, const Bounds3d& box, double aspect);
+
+/// The box that a camera should show: that of the particles' centres with a typical support around
+/// it (the volume's own is drawn out by the single largest one).
+Bounds3d visible_box(const std::vector<FieldSource>& fields, const Bounds3d& centers);
 
 /// Half of a small radius (the 5 % quantile over all fields' particles), which samples the
 /// Gaussians of nearly all particles well; but at most 2048 samples along the diagonal of `box`.

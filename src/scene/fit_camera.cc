@@ -1,13 +1,15 @@
 // A camera that shows all of the data from a pleasing side.
 #include <algorithm>
 #include <array>
+#include <limits>
+#include <numbers>
 
 #include "scene/fit.h"
 
 namespace motes {
 namespace {
 
-constexpr double margin = 0.94;       // of the image, that the data may fill
+constexpr double margin = 0.97;       // of the image, that the data may fill
 constexpr double default_fov = 45;    // degrees
 constexpr double nearly_cubic = 0.8;  // thinnest by largest side
 constexpr double flat = 1e-3;         // likewise: seen straight, as obliquely it would be a line
@@ -77,17 +79,31 @@ Camera fit_camera(const Scene& scene, const Bounds3d& box, double aspect) {
   const CameraAxes axes = camera_axes(camera);
   if (scene.eye) return camera;
 
-  // Far enough away that no corner is outside the image.
-  const double tan_y = margin * std::tan(camera.fov_degrees * M_PI / 360), tan_x = tan_y * aspect;
-  double distance = 0;
+  // As near as all corners allow. With the camera moved by (x, y) across the view, a corner at (u,
+  // v, w) in camera axes about the target is in the image where |u - x| <= tan_x (distance + w),
+  // and so in y.
+  const double tan_y =
+      margin *
+      (camera.orthographic_height ? 1 : std::tan(camera.fov_degrees * std::numbers::pi / 360));
+  const double tan_x = tan_y * aspect;
+  constexpr double none = std::numeric_limits<double>::lowest();
+  double right = none, left = none, top = none, bottom = none, nearest = none;
   for (const Point3d& corner : corners_of(box)) {
     const Vector3d v = corner - camera.target;
-    const double across =
-        std::max(std::abs(dot(v, axes.x)) / tan_x, std::abs(dot(v, axes.y)) / tan_y);
-    const double depth = dot(v, axes.forward);
-    distance =
-        std::max(distance, camera.orthographic_height ? -depth + 0.01 * diagonal : across - depth);
+    const double w = camera.orthographic_height ? 0 : dot(v, axes.forward);
+    right = std::max(right, dot(v, axes.x) / tan_x - w);
+    left = std::max(left, -dot(v, axes.x) / tan_x - w);
+    top = std::max(top, dot(v, axes.y) / tan_y - w);
+    bottom = std::max(bottom, -dot(v, axes.y) / tan_y - w);
+    nearest = std::max(nearest, -dot(v, axes.forward));
   }
+  double distance = std::max({right, left, top, bottom});
+  if (!scene.target) {
+    camera.target =
+        camera.target + tan_x * (right - left) / 2 * axes.x + tan_y * (top - bottom) / 2 * axes.y;
+    distance = std::max(right + left, top + bottom) / 2;
+  }
+  if (camera.orthographic_height) distance = nearest + 0.01 * diagonal;
   camera.eye = camera.target - std::max(distance, 1e-3 * diagonal) * axes.forward;
   return camera;
 }

@@ -49,7 +49,7 @@ RC_GTEST_PROP(FitCamera, ShowsTheWholeBoxAndFillsTheImage, ()) {
   if (*rc::gen::arbitrary<bool>()) scene.up = Vector3d{number(-99, 99), number(1, 99), 0};
   const double extent = extent_in_image(fit_camera(scene, box, aspect), aspect, box);
   RC_ASSERT(extent > 0.9);
-  RC_ASSERT(extent < 0.95);
+  RC_ASSERT(extent < 0.98);
 }
 
 TEST(FitCamera, LooksAtTheLargestFace) {
@@ -80,7 +80,7 @@ TEST(FitCamera, KeepsWhatTheSceneSays) {
   scene.target = {0, 0, 0};
   camera = fit_camera(scene, box, 1);
   EXPECT_EQ(camera.target, (Point3d{0, 0, 0}));
-  EXPECT_LT(extent_in_image(camera, 1, box), 0.95);
+  EXPECT_LT(extent_in_image(camera, 1, box), 0.98);
   scene.orthographic_height = 5;
   EXPECT_FALSE(std::isnan(extent_in_image(fit_camera(scene, box, 1), 1, box)));
 }
@@ -88,10 +88,20 @@ TEST(FitCamera, KeepsWhatTheSceneSays) {
 TEST(DefaultStepSize, IsHalfASmallRadiusWithinBounds) {
   std::vector<FieldSource> fields(2);
   fields[0].radius = {2};
+  fields[0].index.assign(1, 0);
+  fields[1].index.assign(99, 0);
   fields[1].radius.assign(99, 3);
   fields[1].radius[7] = 1e-6f;
   EXPECT_EQ(default_step_size(fields, {{0, 0, 0}, {1, 1, 1}}), 1.5);
   EXPECT_NEAR(default_step_size(fields, {{0, 0, 0}, {2e5, 0, 0}}), 2e5 / 2048, 1e-9);
+}
+
+TEST(VisibleBox, HasATypicalSupportAroundTheCentres) {
+  std::vector<FieldSource> fields(1);
+  fields[0].index.assign(9, 0);
+  fields[0].radius.assign(9, 3);
+  fields[0].radius[8] = 1000;
+  EXPECT_EQ(visible_box(fields, {{0, 0, 0}, {1, 2, 3}}), (Bounds3d{{-6, -6, -6}, {7, 8, 9}}));
 }
 
 /// Rays through `make_value(ray, sample)`.

@@ -1,0 +1,43 @@
+// Opens scenes and reads their particles.
+#include "motes/input.h"
+
+#include "io/reader.h"
+
+namespace motes {
+
+Scene open_scene(const std::filesystem::path& path) {
+  if (is_scene_file(path)) return read_scene(path);
+  Scene scene;
+  scene.data_path = path;
+  return scene;
+}
+
+double milliseconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
+      .count();
+}
+
+Input read_particles(const Scene& scene, Console& console) {
+  const auto start = std::chrono::steady_clock::now();
+  const ReadOptions options{scene.types, &console, &console.warnings()};
+  const auto trajectory = open_trajectory(scene.data_path, options);
+  Input input;
+  input.format = trajectory->format();
+  input.particles = trajectory->read_frame(scene.frame);
+  input.read_ms = milliseconds_since(start);
+  console.print_warnings();
+  return input;
+}
+
+std::vector<FieldSource> make_field_sources(const std::vector<Field>& fields, const Kernel& kernel,
+                                            const ParticleSet& particles, Console& console) {
+  std::vector<FieldSource> sources;
+  sources.reserve(fields.size());
+  for (const Field& field : fields) {
+    sources.push_back(make_field_source(particles, field, kernel, console.warnings()));
+  }
+  console.print_warnings();
+  return sources;
+}
+
+}  // namespace motes

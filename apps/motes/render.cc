@@ -1,0 +1,186 @@
+// motes render: particles to a picture.
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <tbb/global_control.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "core/atomic_file.h"
+#include "core/error.h"
+#include "image/write_image.h"
+#include "motes/commands.h"
+#include "motes/input.h"
+#include "motes/scene_options.h"
+#include "render/renderer.h"
+#include "render/view_profile.h"
+#include "scene/fit.h"
+
+namespace motes {
+namespace {
+
+constexpr const char* examples =
+    R"(Without options the camera holds all of the data, and colours and opacity are fitted to the
+values in view. Options override what a scene says.
+
+Examples:
+  motes render silica.lammpstrj -o silica.png
+  motes render silica.lammpstrj -o oxygen.png --types 1=Si,2=O --transfer-function species
+  motes render box.hdf5 -o box.png --transfer-function magma --no-lighting --size 1920x1080
+  motes render run.xyz.gz -o frame7.png --frame 7 --eye 0,0,-80 --target 0,0,0 --fov 30
+  motes render scene.json -o picture.exr --stats stats.json --repeat 5)";
+
+struct Options {
+  std::string path, output, stats;
+  int threads = 0, repeat = 1;
+  SceneChanges changes;
+};
+
+/// What --stats reports.
+struct Statistics {
+  double read_ms = 0, build_ms = 0;
+  std::vector<double> frame_ms;  // sorted
+  std::size_t particles = 0, particle_bytes = 0, tree_bytes = 0;
+  RenderStatistics frame;
+};
+
+std::string to_json(const Statistics& s) {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const std::size_t n = s.frame_ms.size();
+  const double median = (s.frame_ms[(n - 1) / 2] + s.frame_ms[n / 2]) / 2;
+  const nlohmann::ordered_json out{{"frame_ms", median},
+                                   {"frame_ms_min", s.frame_ms.front()},
+                                   {"build_ms", s.build_ms},
+                                   {"read_ms", s.read_ms},
+                                   {"particles", s.particles},
+                                   {"samples", s.frame.samples},
+                                   {"kernel_evaluations", s.frame.kernel_evaluations},
+                                   {"particle_bytes", s.particle_bytes},
+                                   {"tree_bytes", s.tree_bytes},
+                                   {"peak_rss_bytes", usage.ru_maxrss * 1024},
+                                   {"threads", s.frame.threads},
+                                   {"engine", s.frame.engine},
+                                   {"instruction_set", s.frame.instruction_set}};
+  return out.dump(2) + "\n";
+}
+
+/// Fills in what the scene leaves open from the fields and what the view shows of them.
+ResolvedScene resolve(const Scene& scene, const std::vector<Field>& fields,
+                      std::vector<FieldSource> sources, const KernelSet& kernels) {
+  ResolvedScene resolved;
+  resolved.render = scene.render;
+  const double aspect = static_cast<double>(scene.render.width) / scene.render.height;
+  resolved.camera = fit_camera(scene, visible_box(sources, kernels.centers), aspect);
+  resolved.step_size = scene.render.step_size.value_or(default_step_size(sources, kernels.box()));
+  const auto profiles =
+      sample_view(kernels, resolved.camera, scene.render.width, scene.render.height);
+  for (std::size_t f = 0; f < fields.size(); ++f) {
+    resolved.transfer_functions.push_back(fit_transfer_function(
+        fields[f].transfer_function, sources[f].species_color, profiles[f], fields.size()));
+  }
+  return resolved;
+}
+
+/// Renders one frame, or more to time them: the first of several only warms up.
+Framebuffer render_frames(const Renderer& renderer, const ResolvedScene& scene,
+                          const Options& options, Console& console, Statistics& statistics) {
+  const RenderOptions render_options{options.threads, std::nullopt, &console};
+  Framebuffer image;
+  for (int frame = options.repeat > 1 ? -1 : 0; frame < options.repeat; ++frame) {
+    image = renderer.render(scene, render_options, &statistics.frame);
+    if (frame >= 0) statistics.frame_ms.push_back(statistics.frame.frame_ms);
+  }
+  console.finish();
+  std::sort(statistics.frame_ms.begin(), statistics.frame_ms.end());
+  return image;
+}
+
+void replace_missing_engine(Scene& scene, Console& console) {
+  if (scene.render.engine != Engine::sweep) return;
+  scene.render.engine = Engine::coherent;
+  console.warnings().add("the engine 'sweep' is not built yet; rendering with 'coherent'");
+}
+
+void run(const Options& options) {
+  Console console;
+  std::optional<tbb::global_control> limit;
+  if (options.threads > 0) {
+    limit.emplace(tbb::global_control::max_allowed_parallelism,
+                  static_cast<std::size_t>(options.threads));
+  }
+  // Told at once, not after long work: an output that cannot be written.
+  const ImageFormat format = image_format(options.output);
+  AtomicFile output(options.output);
+  std::optional<AtomicFile> stats;
+  if (!options.stats.empty()) stats.emplace(options.stats);
+
+  Scene scene = open_scene(options.path);
+  options.changes.apply(scene);
+  replace_missing_engine(scene, console);
+  Statistics statistics;
+  std::optional<Renderer> renderer;
+  ResolvedScene resolved;
+  {
+    // The particles as they were read are gone before the first frame: only kernels stay.
+    const Input input = read_particles(scene, console);
+    statistics.read_ms = input.read_ms;
+    const auto fields = expand_fields(scene, input.particles);
+    auto sources = make_field_sources(fields, scene.kernel, input.particles, console);
+    renderer.emplace(input.particles, sources);
+    resolved = resolve(scene, fields, std::move(sources), renderer->kernels());
+  }
+  statistics.build_ms = renderer->build_ms();
+  statistics.particles = renderer->kernels().size();
+  statistics.particle_bytes = renderer->kernels().particle_bytes();
+  statistics.tree_bytes = renderer->kernels().bvh.bytes();
+
+  const Framebuffer image = render_frames(*renderer, resolved, options, console, statistics);
+  write_image(output, format, image, scene.render.termination_opacity, scene.render.background);
+  output.commit();
+  if (stats) {
+    stats->write(to_json(statistics));
+    stats->commit();
+  }
+}
+
+/// Refuses a name whose format is not known while it is still a matter of the command line.
+std::string check_suffix(const std::string& path) {
+  try {
+    image_format(path);
+  } catch (const Error& error) {
+    return fmt::format("--output: {}", error.what());
+  }
+  return "";
+}
+
+}  // namespace
+
+void add_render_command(CLI::App& program) {
+  CLI::App* command = program.add_subcommand("render", "Make a picture of particles.");
+  const auto options = std::make_shared<Options>();
+  command->add_option("FILE", options->path, "particles, or a scene")->required()->type_name("");
+  command->add_option("-o,--output", options->output, "picture: .png, .jpg, .exr or .npy")
+      ->required()
+      ->type_name("OUT")
+      ->check(CLI::Validator(check_suffix, ""));
+  add_picture_options(*command, options->changes);
+  add_field_options(*command, options->changes);
+  add_data_options(*command, options->changes);
+  command->add_option("--threads", options->threads, "threads to use (default: all cores)")
+      ->type_name("N")
+      ->check(CLI::Range(1, 4096));
+  command->add_option("--stats", options->stats, "write times and counts as JSON")
+      ->type_name("STATS.json");
+  command
+      ->add_option("--repeat", options->repeat, "time N frames after one to warm up (default: 1)")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1000000));
+  command->footer(examples);
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace motes

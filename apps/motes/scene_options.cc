@@ -1,0 +1,298 @@
+// Parses and checks the options; a bad value is a wrong command line.
+#include "motes/scene_options.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+
+#include "core/error.h"
+
+namespace motes {
+namespace {
+
+/// A bad value: what was expected, and what was found.
+[[noreturn]] void bad_value(std::string_view option, std::string_view expected,
+                            std::string_view found) {
+  throw CLI::ValidationError(
+      fmt::format("{}: expected {}, found '{}'", option, expected, printable(found)),
+      CLI::ExitCodes::ValidationError);
+}
+
+std::optional<double> number_in(std::string_view text) {
+  if (text.starts_with('+')) text.remove_prefix(1);
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) {
+    return std::nullopt;
+  }
+  return value;
+}
+
+std::optional<std::array<double, 3>> triple_in(std::string_view text) {
+  std::array<double, 3> values{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto comma = text.find(',');
+    if ((comma == std::string_view::npos) != (k == 2)) return std::nullopt;
+    const auto value = number_in(text.substr(0, comma));
+    if (!value) return std::nullopt;
+    values[k] = *value;
+    text.remove_prefix(k == 2 ? text.size() : comma + 1);
+  }
+  return values;
+}
+
+/// Adds an option with one value; `read` makes a change of the scene out of its text.
+void add_option(CLI::App& command, SceneChanges& changes, const std::string& name,
+                const std::string& placeholder, const std::string& description,
+                std::function<SceneChanges::Change(const std::string&)> read) {
+  command
+      .add_option_function<std::string>(
+          name,
+          [&changes, read = std::move(read)](const std::string& text) { changes.add(read(text)); },
+          description)
+      ->type_name(placeholder);
+}
+
+struct NumberRange {
+  double above;
+  double up_to = std::numeric_limits<double>::infinity();
+  bool end_included = true;
+  std::string_view expected;
+
+  bool contains(double v) const { return v > above && (end_included ? v <= up_to : v < up_to); }
+};
+constexpr double no_limit = -std::numeric_limits<double>::infinity();
+constexpr NumberRange any_number{no_limit, -no_limit, true, "a number"};
+constexpr NumberRange positive{0, -no_limit, true, "a number greater than 0"};
+constexpr NumberRange opacity{0, 1, true, "a number greater than 0 and not more than 1"};
+constexpr NumberRange angle{0, 180, false, "an angle greater than 0 and less than 180 degrees"};
+
+void add_number(CLI::App& command, SceneChanges& changes, const std::string& name,
+                const std::string& placeholder, const std::string& description,
+                const NumberRange& range, std::function<void(Scene&, double)> set) {
+  add_option(command, changes, name, placeholder, description,
+             [name, &range, set = std::move(set)](const std::string& text) {
+               const auto value = number_in(text);
+               if (!value || !range.contains(*value)) bad_value(name, range.expected, text);
+               return [set, v = *value](Scene& scene) { set(scene, v); };
+             });
+}
+
+void add_triple(CLI::App& command, SceneChanges& changes, const std::string& name,
+                const std::string& description, std::function<void(Scene&, const Vector3d&)> set) {
+  add_option(command, changes, name, "X,Y,Z", description,
+             [name, set = std::move(set)](const std::string& text) {
+               const auto v = triple_in(text);
+               if (!v) bad_value(name, "three numbers such as 1,2.5,-3", text);
+               return [set, vector = Vector3d{(*v)[0], (*v)[1], (*v)[2]}](Scene& scene) {
+                 set(scene, vector);
+               };
+             });
+}
+
+/// Calls `change` for every field; a scene without any gets the one that it stands for.
+void for_each_field(Scene& scene, const std::function<void(Field&)>& change) {
+  if (scene.fields.empty()) scene.fields.emplace_back().name = "all";
+  for (Field& field : scene.fields) change(field);
+}
+
+void add_number_or_property(CLI::App& command, SceneChanges& changes, const std::string& name,
+                            const std::string& placeholder, const std::string& description,
+                            const NumberRange& range,
+                            std::optional<NumberOrProperty> Field::*member) {
+  add_option(command, changes, name, placeholder, description,
+             [name, &range, member](const std::string& text) -> SceneChanges::Change {
+               const auto number = number_in(text);
+               if (text.empty() || (number && !range.contains(*number))) {
+                 bad_value(name, fmt::format("{} or the name of a property", range.expected), text);
+               }
+               const NumberOrProperty value =
+                   number ? NumberOrProperty(*number) : NumberOrProperty(text);
+               return [member, value](Scene& scene) {
+                 for_each_field(scene, [&](Field& field) { field.*member = value; });
+               };
+             });
+}
+
+SceneChanges::Change read_types(const std::string& text) {
+  std::map<int, std::string> types;
+  std::string_view rest = text;
+  while (!rest.empty()) {
+    const std::string_view item = rest.substr(0, rest.find(','));
+    rest.remove_prefix(std::min(rest.size(), item.size() + 1));
+    int number = 0;
+    const auto [end, error] = std::from_chars(item.data(), item.data() + item.size(), number);
+    const auto equals = item.find('=');
+    if (error != std::errc{} || number < 0 || equals == std::string_view::npos ||
+        end != item.data() + equals || equals + 1 == item.size()) {
+      bad_value("--types", "names of numeric types such as 1=Si,2=O", text);
+    }
+    types[number] = item.substr(equals + 1);
+  }
+  return [types](Scene& scene) {
+    for (const auto& [number, name] : types) scene.types[number] = name;
+  };
+}
+
+SceneChanges::Change read_size(const std::string& text) {
+  constexpr int max_side = 16384;
+  int width = 0, height = 0;
+  const char* const last = text.data() + text.size();
+  const auto [middle, error] = std::from_chars(text.data(), last, width);
+  bool good = error == std::errc{} && middle != last && (*middle == 'x' || *middle == 'X');
+  if (good) {
+    const auto [end, second_error] = std::from_chars(middle + 1, last, height);
+    good = second_error == std::errc{} && end == last;
+  }
+  if (!good || width < 1 || height < 1 || width > max_side || height > max_side) {
+    bad_value("--size", fmt::format("WIDTHxHEIGHT, each from 1 to {}", max_side), text);
+  }
+  return [width, height](Scene& scene) {
+    scene.render.width = width;
+    scene.render.height = height;
+  };
+}
+
+SceneChanges::Change read_background(const std::string& text) {
+  Color color;
+  if (text == "white") {
+    color = {1, 1, 1};
+  } else if (text != "black") {
+    // A # begins a comment in the shell, so it may be left out.
+    const auto srgb = color_from_text(text.starts_with('#') ? text : "#" + text);
+    const auto linear = triple_in(text);
+    if (srgb) {
+      color = *srgb;
+    } else if (linear && std::min({(*linear)[0], (*linear)[1], (*linear)[2]}) >= 0) {
+      color = {static_cast<float>((*linear)[0]), static_cast<float>((*linear)[1]),
+               static_cast<float>((*linear)[2])};
+    } else {
+      bad_value("--background", "black, white, rrggbb (sRGB) or r,g,b (linear, from 0)", text);
+    }
+  }
+  return [color](Scene& scene) { scene.render.background = color; };
+}
+
+SceneChanges::Change read_transfer_function_option(const std::string& text) {
+  std::vector<std::string> names = color_map_names();
+  names.emplace_back(species_colors);
+  if (std::find(names.begin(), names.end(), text) != names.end()) {
+    return [text](Scene& scene) {
+      for_each_field(scene, [&](Field& field) {
+        field.transfer_function = NamedTransferFunction{text, {}, {}, {}};
+      });
+    };
+  }
+  if (std::filesystem::path(text).extension() != ".json") {
+    throw CLI::ValidationError(
+        fmt::format("--transfer-function: {}", unknown_name("colour map", text, names).what()),
+        CLI::ExitCodes::ValidationError);
+  }
+  return [text](Scene& scene) {
+    const auto function = read_transfer_function(text);
+    for_each_field(scene, [&](Field& field) { field.transfer_function = function; });
+  };
+}
+
+SceneChanges::Change read_engine(const std::string& text) {
+  try {
+    return [engine = engine_from_name(text)](Scene& scene) { scene.render.engine = engine; };
+  } catch (const Error& error) {
+    throw CLI::ValidationError(fmt::format("--engine: {}", error.what()),
+                               CLI::ExitCodes::ValidationError);
+  }
+}
+
+void add_camera_options(CLI::App& command, SceneChanges& changes) {
+  add_triple(command, changes, "--eye", "where the camera is (default: all of the data in view)",
+             [](Scene& s, const Vector3d& v) { s.eye = Point3d(v); });
+  add_triple(command, changes, "--target", "what it looks at (default: the middle of the data)",
+             [](Scene& s, const Vector3d& v) { s.target = Point3d(v); });
+  add_triple(command, changes, "--up",
+             "what is up in the picture (default: y, or z for a side view)",
+             [](Scene& s, const Vector3d& v) { s.up = v; });
+  add_number(command, changes, "--fov", "DEGREES", "vertical field of view (default: 45)", angle,
+             [](Scene& s, double v) {
+               s.fov_degrees = v;
+               s.orthographic_height.reset();
+             });
+  add_number(command, changes, "--orthographic", "HEIGHT",
+             "parallel projection; the height of the picture in the data's unit of length",
+             positive, [](Scene& s, double v) {
+               s.orthographic_height = v;
+               s.fov_degrees.reset();
+             });
+  command.get_option("--fov")->excludes("--orthographic");
+}
+
+}  // namespace
+
+void add_data_options(CLI::App& command, SceneChanges& changes) {
+  add_option(command, changes, "--frame", "N", "frame of a trajectory, from 0 (default: 0)",
+             [](const std::string& text) {
+               std::uint64_t frame = 0;
+               const char* const last = text.data() + text.size();
+               const auto [end, error] = std::from_chars(text.data(), last, frame);
+               if (error != std::errc{} || end != last) {
+                 bad_value("--frame", "a whole number of 0 or more", text);
+               }
+               return [frame](Scene& scene) { scene.frame = frame; };
+             });
+  add_option(command, changes, "--types", "1=Si,2=O", "names of numeric types (LAMMPS)",
+             read_types);
+}
+
+void add_field_options(CLI::App& command, SceneChanges& changes) {
+  add_number_or_property(command, changes, "--radius", "R",
+                         "standard deviation of the Gaussians, a number or a property\n"
+                         "(default: covalent radii, or from smoothing lengths)",
+                         positive, &Field::radius);
+  add_number_or_property(command, changes, "--weight", "W",
+                         "weight of the particles, a number or a property (default: 1,\n"
+                         "or mass as a density where the data have sizes and masses)",
+                         any_number, &Field::weight);
+  add_number(command, changes, "--support-factor", "S",
+             "the Gaussians end at S standard deviations (default: 2)", positive,
+             [](Scene& scene, double v) {
+               scene.kernel.support_factor = v;
+               for (Field& field : scene.fields) field.support_factor.reset();
+             });
+  add_number(command, changes, "--kernel-scale", "K", "factor on all Gaussians (default: 1)",
+             any_number, [](Scene& scene, double v) {
+               scene.kernel.kernel_scale = v;
+               for (Field& field : scene.fields) field.kernel_scale.reset();
+             });
+}
+
+void add_picture_options(CLI::App& command, SceneChanges& changes) {
+  add_option(command, changes, "--size", "WxH",
+             "size of the picture in pixels (default: 1024x1024)", read_size);
+  add_camera_options(command, changes);
+  add_option(command, changes, "--transfer-function", "NAME|FILE.json",
+             fmt::format("colours and opacity: {}, species,\nor a file with points; names are "
+                         "fitted to the values in view (default: viridis)",
+                         fmt::join(color_map_names(), ", ")),
+             read_transfer_function_option);
+  command.add_flag_function(
+      "--lighting,!--no-lighting",
+      [&changes](std::int64_t count) {
+        changes.add([on = count > 0](Scene& scene) { scene.render.lighting.enabled = on; });
+      },
+      "shade by the field's gradient, or not (default: shade)");
+  add_option(command, changes, "--background", "COLOUR",
+             "black, white, rrggbb or linear r,g,b (default: black)", read_background);
+  add_number(command, changes, "--step-size", "S",
+             "distance of samples (default: half of a small radius)", positive,
+             [](Scene& scene, double v) { scene.render.step_size = v; });
+  add_number(command, changes, "--termination-opacity", "A",
+             "opacity at which a ray stops (default: 0.97)", opacity,
+             [](Scene& scene, double v) { scene.render.termination_opacity = v; });
+  add_option(command, changes, "--engine", "NAME", "sweep, coherent or direct (default: coherent)",
+             read_engine);
+}
+
+}  // namespace motes
