@@ -30,7 +30,6 @@ struct FrustumPlane {
 };
 
 struct SlabFrame {
-  double reference_depth = 0;
   Point3d reference;                          ///< internal
   float reference_high[3], reference_low[3];  ///< reference = high + low to 2^-48
   float axes[3][3];                           ///< rows X, Y, F: world to camera axes

@@ -162,9 +162,9 @@ struct PixelState {
 /// Composites the samples of `slab` into `pixels`. A ray that reaches the termination opacity ends:
 /// its packet.last becomes that sample. `buffer_has_gradients` as its layout says. Hot: nothing is
 /// checked.
-HWY_NOINLINE void integrate(const std::vector<Classifier>& classifiers,
-                            const ShadingConstants& shading, const Slab& slab, SampleBuffer& buffer,
-                            RayPacket& packet, PixelState& pixels) {
+inline HWY_NOINLINE void integrate(const std::vector<Classifier>& classifiers,
+                                   const ShadingConstants& shading, const Slab& slab,
+                                   SampleBuffer& buffer, RayPacket& packet, PixelState& pixels) {
   const LaneTag d;
   const SampleLayout& layout = buffer.layout();
   const int lanes = packet.lanes;

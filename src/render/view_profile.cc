@@ -46,8 +46,8 @@ std::vector<RayProfiles> sample_view(const KernelSet& kernels, const Camera& cam
   RayProfiles rays;
   rays.ray_begin.push_back(0);
   for (int i = 0; i < rays_an_axis * rays_an_axis; ++i) {
-    const double s = (i % rays_an_axis + jitter()) / rays_an_axis;
-    const double t = (i / rays_an_axis + jitter()) / rays_an_axis;
+    const int column = i % rays_an_axis, row = i / rays_an_axis;
+    const double s = (column + jitter()) / rays_an_axis, t = (row + jitter()) / rays_an_axis;
     const Ray ray = view_ray(camera, axes, aspect, s, t);
     const DepthRange range = clip(box, ray.origin, ray.direction);
     if (!(range.near < range.far)) continue;
