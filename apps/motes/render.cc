@@ -172,13 +172,13 @@ void add_render_command(CLI::App& program) {
   add_data_options(*command, options->changes);
   command->add_option("--threads", options->threads, "threads to use (default: all cores)")
       ->type_name("N")
-      ->check(CLI::Range(1, 4096));
+      ->check(CLI::Range(1, 4096).description(""));
   command->add_option("--stats", options->stats, "write times and counts as JSON")
       ->type_name("STATS.json");
   command
       ->add_option("--repeat", options->repeat, "time N frames after one to warm up (default: 1)")
       ->type_name("N")
-      ->check(CLI::Range(1, 1000000));
+      ->check(CLI::Range(1, 1000000).description(""));
   command->footer(examples);
   command->callback([options] { run(*options); });
 }

@@ -8,6 +8,8 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <limits>
+#include <optional>
 
 #include "core/error.h"
 
@@ -22,13 +24,12 @@ namespace {
       CLI::ExitCodes::ValidationError);
 }
 
+/// The number that `text` is; it may be infinite or NaN.
 std::optional<double> number_in(std::string_view text) {
   if (text.starts_with('+')) text.remove_prefix(1);
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) {
-    return std::nullopt;
-  }
+  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
   return value;
 }
 
@@ -38,7 +39,7 @@ std::optional<std::array<double, 3>> triple_in(std::string_view text) {
     const auto comma = text.find(',');
     if ((comma == std::string_view::npos) != (k == 2)) return std::nullopt;
     const auto value = number_in(text.substr(0, comma));
-    if (!value) return std::nullopt;
+    if (!value || !std::isfinite(*value)) return std::nullopt;
     values[k] = *value;
     text.remove_prefix(k == 2 ? text.size() : comma + 1);
   }
@@ -63,7 +64,9 @@ struct NumberRange {
   bool end_included = true;
   std::string_view expected;
 
-  bool contains(double v) const { return v > above && (end_included ? v <= up_to : v < up_to); }
+  bool contains(double v) const {
+    return std::isfinite(v) && v > above && (end_included ? v <= up_to : v < up_to);
+  }
 };
 constexpr double no_limit = -std::numeric_limits<double>::infinity();
 constexpr NumberRange any_number{no_limit, -no_limit, true, "a number"};
@@ -229,6 +232,21 @@ void add_camera_options(CLI::App& command, SceneChanges& changes) {
   command.get_option("--fov")->excludes("--orthographic");
 }
 
+void add_lighting_options(CLI::App& command, SceneChanges& changes) {
+  const auto add = [&](const std::string& name, bool enabled, const std::string& description) {
+    return command
+        .add_flag_callback(
+            name,
+            [&changes, enabled] {
+              changes.add([enabled](Scene& scene) { scene.render.lighting.enabled = enabled; });
+            },
+            description)
+        ->disable_flag_override();
+  };
+  CLI::Option* on = add("--lighting", true, "shade by the field's gradient (the default)");
+  add("--no-lighting", false, "show colours as they are")->excludes(on);
+}
+
 }  // namespace
 
 void add_data_options(CLI::App& command, SceneChanges& changes) {
@@ -277,12 +295,7 @@ void add_picture_options(CLI::App& command, SceneChanges& changes) {
                          "fitted to the values in view (default: viridis)",
                          fmt::join(color_map_names(), ", ")),
              read_transfer_function_option);
-  command.add_flag_function(
-      "--lighting,!--no-lighting",
-      [&changes](std::int64_t count) {
-        changes.add([on = count > 0](Scene& scene) { scene.render.lighting.enabled = on; });
-      },
-      "shade by the field's gradient, or not (default: shade)");
+  add_lighting_options(command, changes);
   add_option(command, changes, "--background", "COLOUR",
              "black, white, rrggbb or linear r,g,b (default: black)", read_background);
   add_number(command, changes, "--step-size", "S",

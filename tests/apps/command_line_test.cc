@@ -1,0 +1,360 @@
+// The contract of the command line: exit status, messages, what the options do, no half files.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <vector>
+
+#include "apps/program.h"
+
+namespace motes {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+// Two silicon and one oxygen atom.
+constexpr const char* three_atoms = "3\n\nSi 0 0 0\nO 2 0 0\nSi 4 0 0\n";
+constexpr const char* one_atom = "1\n\nSi 0 0 0\n";
+
+class CommandLine : public testing::Test {
+ protected:
+  CommandLine() {
+    workspace_.write("a.xyz", three_atoms);
+    workspace_.write("one.xyz", one_atom);
+  }
+
+  Outcome run(const std::string& arguments) { return workspace_.run(arguments); }
+
+  /// The failure of `arguments` with that status: one line, returned.
+  std::string failure(const std::string& arguments, int status) {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.status, status) << arguments << "\n" << outcome.err;
+    EXPECT_EQ(outcome.out, "") << arguments;
+    EXPECT_THAT(outcome.err, StartsWith("motes: error: ")) << arguments;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+    return outcome.err;
+  }
+  void succeed(const std::string& arguments) {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.status, 0) << arguments << "\n" << outcome.err;
+    EXPECT_EQ(outcome.err, "") << arguments;
+  }
+
+  /// The floats of an NPY picture.
+  std::vector<float> pixels(const std::string& name) {
+    const std::string bytes = workspace_.read(name);
+    const auto data = bytes.find('\n');
+    EXPECT_NE(data, std::string::npos);
+    std::vector<float> values((bytes.size() - data - 1) / sizeof(float));
+    std::memcpy(values.data(), bytes.data() + data + 1, values.size() * sizeof(float));
+    return values;
+  }
+
+  Workspace workspace_;
+};
+
+TEST_F(CommandLine, HelpTeachesWithExamples) {
+  for (const std::string command : {"", "info ", "probe ", "render "}) {
+    const Outcome outcome = run(command + "--help");
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_EQ(outcome.err, "");
+    EXPECT_THAT(outcome.out, HasSubstr("Examples:\n")) << command;
+    EXPECT_THAT(outcome.out, HasSubstr("motes " + command)) << command;
+  }
+  EXPECT_THAT(run("--version").out, StartsWith("motes "));
+}
+
+TEST_F(CommandLine, AWrongCommandLineIsStatus2) {
+  EXPECT_THAT(failure("", 2), HasSubstr("motes --help"));
+  failure("paint a.xyz", 2);
+  failure("render", 2);
+  EXPECT_THAT(failure("render a.xyz", 2), HasSubstr("--output"));
+  EXPECT_THAT(failure("render a.xyz -o a.png --colour red", 2), HasSubstr("motes render --help"));
+  EXPECT_THAT(failure("render a.xyz -o a.tiff", 2), HasSubstr(".png"));
+  failure("probe a.xyz", 2);
+  for (const std::string bad : {"--size 100",
+                                "--size 0x5",
+                                "--size 5x99999",
+                                "--size 5x5x5",
+                                "--eye 1,2",
+                                "--eye 1,2,3,4",
+                                "--eye 1,2,nan",
+                                "--up a,b,c",
+                                "--fov 0",
+                                "--fov 180",
+                                "--fov x",
+                                "--orthographic -1",
+                                "--fov 3 --orthographic 3",
+                                "--frame -1",
+                                "--frame 1.5",
+                                "--types 1",
+                                "--types 1=",
+                                "--types Si=1",
+                                "--step-size 0",
+                                "--step-size inf",
+                                "--support-factor 0",
+                                "--termination-opacity 0",
+                                "--termination-opacity 1.1",
+                                "--radius 0",
+                                "--radius -1",
+                                "--radius ''",
+                                "--weight inf",
+                                "--transfer-function virids",
+                                "--background blue",
+                                "--background 12345",
+                                "--background 1,2,-3",
+                                "--engine cells",
+                                "--engine fast",
+                                "--lighting --no-lighting",
+                                "--threads 0",
+                                "--threads x",
+                                "--repeat 0",
+                                "--lighting=maybe"}) {
+    failure("render a.xyz -o a.png " + bad, 2);
+  }
+  EXPECT_FALSE(workspace_.exists("a.png"));
+}
+
+TEST_F(CommandLine, WrongNamesAreHelpedWithTheNearest) {
+  EXPECT_THAT(failure("render a.xyz -o a.png --transfer-function virids", 2),
+              HasSubstr("did you mean 'viridis'"));
+  EXPECT_THAT(failure("render a.xyz -o a.png --engine direkt", 2),
+              HasSubstr("did you mean 'direct'"));
+  EXPECT_THAT(failure("render a.xyz -o a.png --radius siize", 1),
+              HasSubstr("unknown property 'siize'"));
+}
+
+TEST_F(CommandLine, AFailureIsStatus1AndNamesTheFile) {
+  EXPECT_THAT(failure("info missing.xyz", 1), HasSubstr("missing.xyz: "));
+  EXPECT_THAT(failure("render missing.xyz -o a.png", 1), HasSubstr("missing.xyz: "));
+  EXPECT_THAT(failure("probe missing.xyz --points a.xyz", 1), HasSubstr("a.xyz:"));
+  EXPECT_THAT(failure("info .", 1), HasSubstr(".: "));
+  workspace_.write("text", "no particles here\n");
+  EXPECT_THAT(failure("info text", 1), HasSubstr("unknown format"));
+  EXPECT_THAT(failure("info a.xyz --frame 1", 1), HasSubstr("no frame 1"));
+  workspace_.write("bad.xyz", "2\n\nSi 0 0 0\nO 1 x 0\n");
+  EXPECT_THAT(failure("render bad.xyz -o a.png", 1), HasSubstr("bad.xyz:4: "));
+  EXPECT_FALSE(workspace_.exists("a.png"));
+}
+
+TEST_F(CommandLine, AnOutputThatCannotBeWrittenIsToldBeforeReading) {
+  for (const std::string option : {"-o no/a.png", "-o a.png --stats no/s.json"}) {
+    EXPECT_THAT(failure("render missing.xyz " + option, 1), HasSubstr("no/"));
+  }
+  EXPECT_THAT(failure("probe missing.xyz --points missing.csv -o no/a.csv", 1), HasSubstr("no/"));
+  failure("render a.xyz -o a.png --size 8x8 --stats /dev/full", 1);
+  EXPECT_EQ(run("info a.xyz >/dev/full").status, 1);
+}
+
+TEST_F(CommandLine, AFailureHarmsNoOldFileAndLeavesNoneBehind) {
+  workspace_.write("a.png", "old");
+  workspace_.write("empty.xyz", "0\n\n");
+  const std::size_t before = workspace_.num_files();
+  failure("render missing.xyz -o a.png", 1);
+  failure("render empty.xyz -o a.png", 1);
+  failure("render a.xyz -o a.png --eye 1,1,1 --target 1,1,1", 1);
+  EXPECT_EQ(workspace_.read("a.png"), "old");
+  EXPECT_EQ(workspace_.num_files(), before);
+  succeed("render a.xyz -o a.png --size 8x8");
+  EXPECT_NE(workspace_.read("a.png"), "old");
+  EXPECT_EQ(workspace_.num_files(), before);
+}
+
+TEST_F(CommandLine, RenderWritesEveryFormat) {
+  succeed("render a.xyz -o a.png --size 16x8");
+  EXPECT_THAT(workspace_.read("a.png"), StartsWith("\x89PNG"));
+  succeed("render a.xyz -o a.jpg --size 16x8");
+  EXPECT_THAT(workspace_.read("a.jpg"), StartsWith("\xff\xd8"));
+  succeed("render a.xyz -o a.EXR --size 16x8");
+  EXPECT_THAT(workspace_.read("a.EXR"), StartsWith("\x76\x2f\x31\x01"));
+  succeed("render a.xyz -o a.npy --size 16x8");
+  EXPECT_EQ(pixels("a.npy").size(), 16u * 8 * 4);
+}
+
+TEST_F(CommandLine, WithoutOptionsThePictureIsNeitherEmptyNorABlock) {
+  succeed("render a.xyz -o a.npy");
+  const std::vector<float> rgba = pixels("a.npy");
+  ASSERT_EQ(rgba.size(), 1024u * 1024 * 4);
+  std::size_t seen = 0, opaque = 0;
+  for (std::size_t i = 3; i < rgba.size(); i += 4) {
+    seen += rgba[i] > 0.05f;
+    opaque += rgba[i] > 0.95f;
+  }
+  EXPECT_GT(seen, rgba.size() / 4 / 20);
+  EXPECT_LT(opaque, seen / 2);
+}
+
+TEST_F(CommandLine, StatisticsHaveEveryKey) {
+  succeed("render a.xyz -o a.png --size 32x32 --stats s.json --repeat 3 --threads 1");
+  const auto stats = nlohmann::json::parse(workspace_.read("s.json"));
+  for (const char* key : {"frame_ms", "frame_ms_min", "build_ms", "read_ms", "particles", "samples",
+                          "kernel_evaluations", "particle_bytes", "tree_bytes", "peak_rss_bytes",
+                          "threads", "engine", "instruction_set"}) {
+    EXPECT_TRUE(stats.contains(key)) << key;
+  }
+  EXPECT_EQ(stats["particles"], 3);
+  EXPECT_EQ(stats["threads"], 1);
+  EXPECT_EQ(stats["engine"], "coherent");
+  EXPECT_GT(stats["samples"], 0);
+  EXPECT_LE(stats["frame_ms_min"], stats["frame_ms"]);
+}
+
+TEST_F(CommandLine, ASceneIsToldByItsContentAndOptionsOverrideIt) {
+  workspace_.write("scene.txt",
+                   R"({"version": 1, "data": {"path": "a.xyz"}, "camera": {"orthographic": 9},
+                       "fields": [{"name": "si", "select": {"species": "Si"}, "radius": 1,
+                                   "kernel": {"support_factor": 1}}],
+                       "render": {"size": [32, 16], "engine": "direct"}})");
+  succeed("render scene.txt -o a.npy --stats s.json");
+  EXPECT_EQ(pixels("a.npy").size(), 32u * 16 * 4);
+  auto stats = nlohmann::json::parse(workspace_.read("s.json"));
+  EXPECT_EQ(stats["particles"], 2);
+  EXPECT_EQ(stats["engine"], "direct");
+
+  succeed(
+      "render scene.txt -o a.npy --stats s.json --size 8x8 --fov 30 --engine coherent "
+      "--background white --no-lighting");
+  EXPECT_EQ(pixels("a.npy").size(), 8u * 8 * 4);
+  EXPECT_EQ(nlohmann::json::parse(workspace_.read("s.json"))["engine"], "coherent");
+
+  // At a distance of 1.5 the kernel of the scene has ended, that of the option has not.
+  workspace_.write("p.csv", "-1.5,0,0\n");
+  EXPECT_THAT(run("probe scene.txt --points p.csv").out, HasSubstr("\n-1.5,0,0,0,"));
+  EXPECT_THAT(run("probe scene.txt --points p.csv --support-factor 2").out,
+              HasSubstr(fmt::format("\n-1.5,0,0,{:.9g},", std::exp(-1.125))));
+}
+
+TEST_F(CommandLine, ASceneWithMistakesNamesTheKey) {
+  workspace_.write("s.json", R"({"version": 1, "data": {"path": "a.xyz"}, "rendr": {}})");
+  EXPECT_THAT(failure("render s.json -o a.png", 1),
+              HasSubstr("s.json: unknown key 'rendr'; did you mean 'render'?"));
+  workspace_.write("s.json", "{\"version\": 1,\n\"data\": }");
+  EXPECT_THAT(failure("render s.json -o a.png", 1), HasSubstr("s.json:2: "));
+}
+
+TEST_F(CommandLine, ATransferFunctionMayBeAFile) {
+  workspace_.write("t.json", R"({"points": [{"value": 0, "color": "#ff0000", "extinction": 0},
+                                            {"value": 1, "color": "#ff0000", "extinction": 9}]})");
+  succeed("render a.xyz -o a.npy --size 32x32 --no-lighting --transfer-function t.json");
+  const std::vector<float> rgba = pixels("a.npy");
+  float red = 0, green = 0;
+  for (std::size_t i = 0; i < rgba.size(); i += 4) {
+    red += rgba[i];
+    green += rgba[i + 1];
+  }
+  EXPECT_GT(red, 1);
+  EXPECT_EQ(green, 0);
+  EXPECT_THAT(failure("render a.xyz -o a.npy --transfer-function none.json", 1),
+              HasSubstr("none.json: "));
+  for (const std::string map :
+       {"viridis", "magma", "inferno", "plasma", "heat", "grey", "species"}) {
+    succeed("render a.xyz -o a.npy --size 16x16 --transfer-function " + map);
+  }
+}
+
+TEST_F(CommandLine, ACameraThatLooksAtNothingGivesAnEmptyPicture) {
+  succeed("render a.xyz -o a.npy --size 16x16 --eye 0,0,50 --target 0,0,99");
+  for (const float v : pixels("a.npy")) EXPECT_EQ(v, 0);
+}
+
+TEST_F(CommandLine, ParticlesThatCannotBeDrawnAreCounted) {
+  workspace_.write("nan.xyz", "3\n\nSi 0 0 0\nSi nan 0 0\nSi 1 inf 0\n");
+  const Outcome outcome = run("render nan.xyz -o a.png --size 16x16");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.err, HasSubstr("motes: warning: "));
+  EXPECT_THAT(outcome.err, HasSubstr("2 of 3 particles"));
+  workspace_.write("s.json", R"({"version": 1, "data": {"path": "a.xyz"},
+                                 "fields": [{"select": {"expression": "x > 99"}}]})");
+  EXPECT_THAT(failure("render s.json -o a.png", 1), HasSubstr("selects none of the 3 particles"));
+}
+
+TEST_F(CommandLine, TheSweepIsAnnouncedAsMissing) {
+  const Outcome outcome = run("render a.xyz -o a.png --size 16x16 --engine sweep --stats s.json");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.err, StartsWith("motes: warning: the engine 'sweep' is not built yet"));
+  EXPECT_EQ(nlohmann::json::parse(workspace_.read("s.json"))["engine"], "coherent");
+}
+
+TEST_F(CommandLine, InfoPrintsATable) {
+  const Outcome outcome = run("info a.xyz");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.out, testing::ContainsRegex("particles +3\n"));
+  EXPECT_THAT(outcome.out, testing::ContainsRegex("Si +2\n"));
+}
+
+TEST_F(CommandLine, InfoPrintsJson) {
+  workspace_.write("cell.xyz",
+                   "1\nLattice=\"5 0 0 0 6 0 0 0 7\" pbc=\"T F T\" Time=2.5 "
+                   "Properties=species:S:1:pos:R:3:charge:R:1\nSi 1 2 3 0.5\n"
+                   "1\nLattice=\"5 0 0 0 6 0 0 0 7\" "
+                   "Properties=species:S:1:pos:R:3:charge:R:1\nSi 1 2 3 0.5\n");
+  auto info = nlohmann::json::parse(run("info cell.xyz --json").out);
+  EXPECT_EQ(info["particles"], 1);
+  EXPECT_EQ(info["frames"], 2);
+  EXPECT_EQ(info["species"], nlohmann::json::parse(R"([{"name": "Si", "count": 1}])"));
+  EXPECT_THAT(info["properties"].dump(), HasSubstr("\"charge\""));
+  EXPECT_EQ(info["cell"], nlohmann::json::parse("[[5, 0, 0], [0, 6, 0], [0, 0, 7]]"));
+  EXPECT_EQ(info["periodic"], nlohmann::json::parse("[true, false, true]"));
+  EXPECT_EQ(info["bounds"], nlohmann::json::parse(R"({"min": [1, 2, 3], "max": [1, 2, 3]})"));
+  EXPECT_EQ(info["length_unit"], "angstrom");
+  info = nlohmann::json::parse(run("info a.xyz --json").out);
+  EXPECT_EQ(info["cell"], nullptr);
+  EXPECT_TRUE(info.contains("format"));
+  EXPECT_TRUE(info.contains("time"));
+}
+
+class Probe : public CommandLine {
+ protected:
+  /// What probing one silicon atom at the origin with radius 2 gives, at (1, 0, 0).
+  std::string row() const {
+    const double value = std::exp(-0.125);
+    return fmt::format("1,0,0,{:.9g},{:.9g},", value, -value / 4);
+  }
+  Outcome probe(const std::string& points) {
+    workspace_.write("p.csv", points);
+    return run("probe one.xyz --radius 2 --points p.csv");
+  }
+};
+
+TEST_F(Probe, PrintsValuesAndGradients) {
+  const Outcome outcome = probe("x,y,z\n1,0,0\n0,0,99\n");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  std::istringstream lines(outcome.out);
+  std::string line;
+  std::getline(lines, line);
+  EXPECT_EQ(line, "x,y,z,all,all_dx,all_dy,all_dz");
+  std::getline(lines, line);
+  EXPECT_THAT(line, StartsWith(row()));
+  std::getline(lines, line);
+  EXPECT_THAT(line, testing::MatchesRegex("0,0,99,-?0,-?0,-?0,-?0"));
+}
+
+TEST_F(Probe, ReadsWhatPeopleWrite) {
+  for (const std::string points :
+       {"1,0,0", "1 0 0\n", "  1\t0\t0 \r\n", "1;0;0\n", "# a comment\n\n1, 0, 0\n",
+        "z,name,y,x\n0,a,0,1\n", "\"x\",\"y\",\"z\"\n1,0,0\n", "\xef\xbb\xbfX,Y,Z\n1e0,0.0,+0\n"}) {
+    EXPECT_THAT(probe(points).out, HasSubstr("\n" + row())) << points;
+  }
+  workspace_.write("p.csv", "1,0,0\n");
+  EXPECT_THAT(run("probe one.xyz --radius 2 --points - <p.csv").out, HasSubstr(row()));
+  succeed("probe one.xyz --radius 2 --points p.csv -o out.csv");
+  EXPECT_THAT(workspace_.read("out.csv"), HasSubstr(row()));
+}
+
+TEST_F(Probe, NamesTheLineOfAMistake) {
+  EXPECT_THAT(probe("x,y,z\n1,0,0\n1,b,0\n").err,
+              HasSubstr("p.csv:3: expected a number for y in column 2, found 'b'"));
+  EXPECT_THAT(probe("1,0\n").err, HasSubstr("p.csv:1: expected a number for z"));
+  EXPECT_THAT(probe("a,b,c\n1,0,0\n").err, HasSubstr("p.csv:1: expected numbers, or names"));
+  EXPECT_THAT(probe("x,y,z\n").err, HasSubstr("p.csv: has no points"));
+  EXPECT_EQ(probe("").status, 1);
+}
+
+}  // namespace
+}  // namespace motes
