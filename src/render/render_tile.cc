@@ -113,7 +113,9 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 #include <fmt/format.h>
 
+#include <cctype>
 #include <cstdlib>
+#include <string_view>
 
 #include "core/error.h"
 
@@ -131,6 +133,22 @@ std::vector<std::uint32_t> supported_targets() {
     targets.push_back(bits & (~bits + 1));
   }
   return targets;
+}
+
+/// The instruction set's usual name; Highway calls AVX-512 AVX3.
+std::string name_of(std::uint32_t target) {
+  return target == HWY_AVX3 ? "AVX-512" : hwy::TargetName(target);
+}
+
+/// Upper case without punctuation: "avx512" and "AVX-512" are the same.
+std::string folded(std::string_view name) {
+  std::string out;
+  for (const char c : name) {
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0) {
+      out += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+    }
+  }
+  return out;
 }
 
 void use_target(std::uint32_t target) {
@@ -157,8 +175,7 @@ void choose_target_once() {
 
 std::vector<std::string> instruction_sets() {
   std::vector<std::string> names;
-  for (const std::uint32_t target : supported_targets())
-    names.emplace_back(hwy::TargetName(target));
+  for (const std::uint32_t target : supported_targets()) names.push_back(name_of(target));
   if (current_target() != 0) use_target(current_target());
   return names;
 }
@@ -166,7 +183,10 @@ std::vector<std::string> instruction_sets() {
 void force_instruction_set(const std::string& name) {
   const std::vector<std::uint32_t> targets = supported_targets();
   const std::vector<std::string> names = instruction_sets();
-  const auto it = name.empty() ? names.begin() : std::find(names.begin(), names.end(), name);
+  const auto it =
+      name.empty() ? names.begin()
+                   : std::find_if(names.begin(), names.end(),
+                                  [&](const std::string& n) { return folded(n) == folded(name); });
   if (it == names.end()) {
     throw Error(fmt::format("MOTES_TARGET={}: not to be had on this machine, expected one of {}",
                             printable(name), fmt::join(names, ", ")));
@@ -177,7 +197,7 @@ void force_instruction_set(const std::string& name) {
 
 std::string instruction_set() {
   choose_target_once();
-  return hwy::TargetName(current_target());
+  return name_of(current_target());
 }
 
 TileCounts render_tile(const FrameContext& context, const Tile& tile, Framebuffer& image) {

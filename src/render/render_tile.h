@@ -44,7 +44,7 @@ struct TileCounts {
 /// Renders `tile` into `image`. Hot: nothing is checked.
 TileCounts render_tile(const FrameContext& context, const Tile& tile, Framebuffer& image);
 
-/// Name of the instruction set that render_tile() uses: "AVX3", "AVX2", "SSE4". The environment
+/// Name of the instruction set that render_tile() uses: "AVX-512", "AVX2", "SSE4". The environment
 /// variable MOTES_TARGET forces one. Throws Error if it names none that this machine has.
 std::string instruction_set();
 /// Names that MOTES_TARGET can take on this machine, best first.
