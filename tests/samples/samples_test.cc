@@ -1,0 +1,63 @@
+#include "samples/samples.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <set>
+
+namespace motes {
+namespace {
+
+TEST(Slab, PlanesLieInTheMiddleOfTheirSteps) {
+  const Slab slab{10, 4};
+  EXPECT_DOUBLE_EQ(slab.depth(0, 0.5), 5.25);
+  EXPECT_DOUBLE_EQ(slab.depth(3, 0.5), 6.75);
+}
+
+TEST(SampleLayout, CountsChannels) {
+  SampleLayout layout{.num_fields = 2, .lanes = 8};
+  EXPECT_EQ(layout.channels(), 1);
+  EXPECT_EQ(layout.floats_per_sample(), 16u);
+  layout.gradients = true;
+  EXPECT_EQ(layout.channels(), 4);
+  layout.absolute = true;
+  EXPECT_EQ(layout.channels(), 5);
+  EXPECT_EQ(layout.absolute_channel(), 4);
+  EXPECT_EQ(layout.floats_per_sample(), 80u);
+}
+
+RC_GTEST_PROP(SampleBuffer, RemembersAndClearsWhatWasTouched, ()) {
+  const int capacity = *rc::gen::inRange(1, 300);
+  SampleBuffer buffer(SampleLayout{.num_fields = 2, .lanes = 4}, capacity);
+  std::set<int> touched;
+  const int times = *rc::gen::inRange(0, 5);
+  for (int i = 0; i < times; ++i) {
+    const int first = *rc::gen::inRange(0, capacity);
+    const int last = *rc::gen::inRange(first, capacity);
+    buffer.touch(first, last);
+    for (int k = first; k <= last; ++k) {
+      touched.insert(k);
+      buffer.at(k, 0)[0] = buffer.at(k, 1)[3] = 7;
+    }
+  }
+  for (int k = 0; k < capacity; ++k) RC_ASSERT(buffer.touched(k) == (touched.count(k) == 1));
+  buffer.clear();
+  for (int k = 0; k < capacity; ++k) {
+    RC_ASSERT(!buffer.touched(k));
+    for (int f = 0; f < 2; ++f) {
+      for (int l = 0; l < 4; ++l) RC_ASSERT(buffer.at(k, f)[l] == 0.0f);
+    }
+  }
+}
+
+TEST(SampleBuffer, GrowsToWhatIsAskedFor) {
+  SampleBuffer buffer(SampleLayout{}, 10);
+  buffer.reserve(5);
+  EXPECT_EQ(buffer.capacity(), 10);
+  buffer.reserve(1000);
+  EXPECT_GE(buffer.capacity(), 1000);
+  EXPECT_FALSE(buffer.touched(999));
+}
+
+}  // namespace
+}  // namespace motes
