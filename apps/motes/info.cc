@@ -115,14 +115,14 @@ void print_table(const std::string& path, const FileInfo& info) {
   if (const Bounds3d b = particles.bounds(); !b.empty()) {
     for (int axis = 0; axis < 3; ++axis) {
       print_row(axis == 0 ? "bounds" : "",
-                fmt::format("{} {:.9g} to {:.9g}", "xyz"[axis], b.min[axis], b.max[axis]));
+                fmt::format("{} {:.7g} to {:.7g}", "xyz"[axis], b.min[axis], b.max[axis]));
     }
   }
   if (const auto& cell = particles.cell) {
     for (int k = 0; k < 3; ++k) {
       const auto i = static_cast<std::size_t>(k);
       const Vector3d& v = cell->vectors[i];
-      print_row(k == 0 ? "cell" : "", fmt::format("{} {:.9g}, {:.9g}, {:.9g}{}", "abc"[k], v.x, v.y,
+      print_row(k == 0 ? "cell" : "", fmt::format("{} {:.7g}, {:.7g}, {:.7g}{}", "abc"[k], v.x, v.y,
                                                   v.z, cell->periodic[i] ? "  periodic" : ""));
     }
   }
