@@ -59,7 +59,8 @@ Range fit_range(const RayProfiles& profiles, std::optional<bool> log_scale) {
   const double largest = quantile(positive, 0.999);
   const double small = quantile(positive, 0.05);
   range.log_scale = log_scale.value_or(std::log10(largest / small) > log_decades);
-  range.low = quantile(positive, 0.5);
+  // Over decades most of the volume is all but empty: voids, which would veil the rest.
+  range.low = quantile(positive, range.log_scale ? 0.7 : 0.5);
   range.high = largest;
   if (!(range.low < range.high)) {  // (nearly) one value everywhere: a slab
     range.low = 0.5 * range.high;
