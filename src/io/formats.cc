@@ -8,6 +8,8 @@ const std::vector<Format>& formats() {
   static const std::vector<Format> table{
       hdf5_format(),
       npy_format(),
+      cif_format(),
+      pdb_format(),
       lammps_dump_format(),
       gro_format(),
       lammps_data_format(),
