@@ -29,11 +29,8 @@ std::vector<RowChunk> split_rows(TextBlock block) {
   }
   std::vector<std::uint64_t> num_lines(chunks.size());
   tbb::parallel_for(std::size_t{0}, chunks.size(), [&](std::size_t i) {
-    for_each_row(chunks[i], [&](std::size_t, const char*, const char*, std::uint64_t) {
-      ++chunks[i].num_rows;
-    });
-    const std::string_view text = chunks[i].block.text;
-    num_lines[i] = static_cast<std::uint64_t>(std::count(text.begin(), text.end(), '\n'));
+    num_lines[i] = for_each_row(chunks[i], [&](std::size_t, const char*, const char*,
+                                               std::uint64_t) { ++chunks[i].num_rows; });
   });
   std::size_t row = 0;
   std::uint64_t line = block.first_line;

@@ -28,9 +28,10 @@ std::vector<RowChunk> split_rows(TextBlock block);
 void for_each_chunk(const std::filesystem::path& file, const std::vector<RowChunk>& chunks,
                     const std::function<void(std::size_t)>& parse, const ReadOptions& options);
 
-/// Calls f(row_index, begin, end, line_number) for each row of the chunk, in order.
+/// Calls f(row_index, begin, end, line_number) for each row of the chunk, in order. Returns the
+/// number of its lines.
 template <class F>
-void for_each_row(const RowChunk& chunk, F&& f) {
+std::uint64_t for_each_row(const RowChunk& chunk, F&& f) {
   const char* p = chunk.block.text.data();
   const char* const end = p + chunk.block.text.size();
   std::uint64_t line = chunk.block.first_line;
@@ -41,6 +42,7 @@ void for_each_row(const RowChunk& chunk, F&& f) {
     if (is_row(p, newline)) f(row++, p, newline, line);
     p = newline == end ? end : newline + 1;
   }
+  return line - chunk.block.first_line;
 }
 
 }  // namespace motes
