@@ -40,7 +40,7 @@ std::string guess_element(std::string_view name, std::string_view residue) {
   if (letters.empty()) return std::string(name);
   // An ion is a residue of its own name.
   const bool is_ion = letters == leading_letters(residue);
-  const std::string first = letters.substr(0, 1);
+  std::string first = letters.substr(0, 1);
   if (!is_ion && organic.find(first) != std::string_view::npos &&
       !contains(two_letters, std::string_view(letters).substr(0, 2))) {
     return first;
