@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <unordered_set>
 #include <utility>
 
 #include "io/bytes.h"
@@ -268,11 +269,11 @@ class LammpsDump : public TextTrajectory {
   std::vector<Column> choose_columns(const FrameHeader& header, const PositionColumns& positions,
                                      std::string_view first_row) const {
     const std::string_view species = species_column(header.columns);
+    std::unordered_set<std::string_view> seen;
     std::vector<Column> columns;
     for (const std::string& name : header.columns) {
       const std::string_view token = next_token(first_row);
-      const bool repeated = std::any_of(columns.begin(), columns.end(),
-                                        [&](const Column& c) { return c.name == name; });
+      const bool repeated = !seen.insert(name).second;
       Column column{.name = name};
       if (repeated || is_position_name(name)) {
         column.kind = Column::Kind::ignored;
