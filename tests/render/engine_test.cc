@@ -258,7 +258,7 @@ PlainScene lattice(int n, double distance, double extinction) {
       s.scene.camera.target + distance * n * 2.475 * normalize(Vector3d{0.4, 0.3, -1});
   s.scene.transfer_functions = {ramp(1.2, extinction)};
   s.scene.transfer_functions[0].points[0].value = 0.2;
-  s.scene.render.width = s.scene.render.height = 60;
+  s.scene.render.width = s.scene.render.height = 45;
   return s;
 }
 
@@ -278,9 +278,10 @@ TEST(Engines, LatticeFarAndClose) {
 }
 
 TEST(Engines, DoNotDependOnTheNumberOfThreads) {
-  PlainScene s = lattice(10, 1.5, 0.3);
-  s.scene.render.width = 203;
-  s.scene.render.height = 141;
+  // Some tiles of each kind: whole, and cut off at the right and at the bottom.
+  PlainScene s = lattice(6, 1.5, 0.3);
+  s.scene.render.width = 107;
+  s.scene.render.height = 75;
   s.scene.render.lighting.enabled = true;
   const Renderer renderer(s.particles, s.scene.fields);
   for (const Way& way : all_ways()) {
