@@ -283,7 +283,7 @@ bool matches_csv(std::string_view head) {
 }  // namespace
 
 const Format& csv_format() {
-  static const Format format{"CSV", {".csv", ".tsv", ".dat", ".txt"}, matches_csv, open_csv};
+  static const Format format{"CSV", {".csv", ".tsv", ".txt"}, matches_csv, open_csv};
   return format;
 }
 

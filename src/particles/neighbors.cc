@@ -15,7 +15,6 @@ namespace motes {
 
 namespace {
 
-constexpr std::size_t leaf_size = 12;
 constexpr std::uint32_t no_particle = std::numeric_limits<std::uint32_t>::max();
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
@@ -81,7 +80,8 @@ class NeighborTree::Nearest {
   std::vector<float> heap_;
 };
 
-NeighborTree::NeighborTree(const Coordinates& coordinates, const std::optional<Cell>& cell)
+NeighborTree::NeighborTree(const Coordinates& coordinates, const std::optional<Cell>& cell,
+                           std::size_t leaf_size)
     : num_coordinates_(coordinates.x.size()) {
   assert(num_coordinates_ < no_particle);
   points_.reserve(num_coordinates_);

@@ -24,8 +24,10 @@ struct Coordinates {
 class NeighborTree {
  public:
   /// In parallel, O(n log n). Of a periodic cell the 26 images next to it are looked at.
+  /// Nodes of up to `leaf_size` points are not divided: large ones build faster and answer slower.
   /// Precondition: fewer than 2^32 particles.
-  NeighborTree(const Coordinates& coordinates, const std::optional<Cell>& cell);
+  NeighborTree(const Coordinates& coordinates, const std::optional<Cell>& cell,
+               std::size_t leaf_size = 12);
 
   /// Number of finite positions.
   std::size_t size() const { return points_.size(); }

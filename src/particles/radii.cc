@@ -57,8 +57,9 @@ std::optional<std::vector<float>> species_radii(const ParticleSet& particles, Wa
 }  // namespace
 
 double mean_neighbor_distance(const ParticleSet& particles) {
-  constexpr std::size_t num_samples = 20000;
-  const NeighborTree tree({particles.x, particles.y, particles.z}, particles.cell);
+  // Few queries: most of the time is the tree's build. The mean is good to about 1 %.
+  constexpr std::size_t num_samples = 4096, leaf_size = 1024;
+  const NeighborTree tree({particles.x, particles.y, particles.z}, particles.cell, leaf_size);
   double sum = 0;
   std::size_t count = 0;
   for (const float distance : tree.sample_nearest_distances(num_samples)) {
