@@ -284,7 +284,7 @@ class Parser {
     if (end == std::string_view::npos) {
       fail(at_, fmt::format("expected a closing {} for the one here", quote));
     }
-    const std::string content(text_.substr(at_ + 1, end - at_ - 1));
+    std::string content(text_.substr(at_ + 1, end - at_ - 1));
     at_ = end + 1;
     skip_blanks();
     return content;

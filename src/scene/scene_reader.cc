@@ -30,7 +30,7 @@ bool read_scale(const Value& value) {
 }
 
 std::string read_map_name(const Value& value) {
-  const std::string name = value.text("the name of a colour map");
+  std::string name = value.text("the name of a colour map");
   std::vector<std::string> names = color_map_names();
   names.emplace_back(species_colors);
   if (std::find(names.begin(), names.end(), name) == names.end()) {

@@ -61,6 +61,7 @@ constexpr std::array<ColorMap, 6> color_maps{{
 const std::vector<std::string>& color_map_names() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> all;
+    all.reserve(color_maps.size());
     for (const ColorMap& map : color_maps) all.emplace_back(map.name);
     return all;
   }();
