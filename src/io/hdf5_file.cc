@@ -20,21 +20,18 @@ static_assert(std::is_same_v<herr_t, int>);
 
 constexpr const char* damaged = "cannot be read; the file is damaged, or needs a missing filter";
 
-Hdf5Handle file_access(const std::filesystem::path& path, const ReadOptions& options) {
-  Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+Hdf5Handle open_file(const std::filesystem::path& path, const ReadOptions& options) {
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // it would print; we throw
+  const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_file_locking(access.id(), false, true);  // a lock needs write access on some file systems
+  std::string name = path.string();
   if (ByteStream(path).compressed()) {
     std::string content = read_decompressed(path, options);
     H5Pset_fapl_core(access.id(), std::size_t{1} << 20, false);
     H5Pset_file_image(access.id(), content.data(), content.size());
+    name += "/content";  // the library wants a name that no file has
   }
-  return access;
-}
-
-Hdf5Handle open_file(const std::filesystem::path& path, const ReadOptions& options) {
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // it would print; we throw
-  const Hdf5Handle access = file_access(path, options);
-  Hdf5Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.id()), H5Fclose);
+  Hdf5Handle file(H5Fopen(name.c_str(), H5F_ACC_RDONLY, access.id()), H5Fclose);
   if (!file.valid()) throw Error(path, "is damaged or cut short; expected a whole HDF5 file");
   return file;
 }

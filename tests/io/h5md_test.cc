@@ -4,6 +4,7 @@
 
 #include "core/error.h"
 #include "io/reader.h"
+#include "support/compress.h"
 #include "support/hdf5_writer.h"
 #include "support/shared_data.h"
 #include "support/truncation.h"
@@ -109,6 +110,16 @@ TEST(H5md, RefusesWhatHasNoPositions) {
     writer.dataset("particles/all/position/value", {2, 2}, {1, 2, 3, 4});
   }
   EXPECT_THAT(error_of_reading(file.path()), HasSubstr("expected frames x n x 3"));
+}
+
+TEST(H5md, ReadsCompressedFiles) {
+  const TemporaryFile plain("a.h5md");
+  {
+    Hdf5Writer writer(plain.path());
+    write_trajectory(writer);
+  }
+  const TemporaryFile file("a.h5md.gz", compress(file_content(plain.path()), "gzip"));
+  EXPECT_EQ(read(file.path(), 1).position(1), Point3d(20, 20, 20));
 }
 
 TEST(H5md, CutShortIsAnErrorOfOneLine) {
