@@ -1,6 +1,7 @@
 // Opens scenes and reads their particles.
 #include "motes/input.h"
 
+#include "core/error.h"
 #include "io/reader.h"
 
 namespace motes {
@@ -26,6 +27,7 @@ Input read_particles(const Scene& scene, Console& console) {
   input.particles = trajectory->read_frame(scene.frame);
   input.read_ms = milliseconds_since(start);
   console.print_warnings();
+  if (input.particles.size() == 0) throw Error(scene.data_path, "has no particles in this frame");
   return input;
 }
 

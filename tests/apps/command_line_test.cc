@@ -157,7 +157,7 @@ TEST_F(CommandLine, AFailureHarmsNoOldFileAndLeavesNoneBehind) {
   workspace_.write("empty.xyz", "0\n\n");
   const std::size_t before = workspace_.num_files();
   failure("render missing.xyz -o a.png", 1);
-  failure("render empty.xyz -o a.png", 1);
+  EXPECT_THAT(failure("render empty.xyz -o a.png", 1), HasSubstr("empty.xyz: has no particles"));
   failure("render a.xyz -o a.png --eye 1,1,1 --target 1,1,1", 1);
   EXPECT_EQ(workspace_.read("a.png"), "old");
   EXPECT_EQ(workspace_.num_files(), before);
