@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <stdlib.h>
 #include <sys/wait.h>
 
 #include <cstdlib>
@@ -22,19 +21,9 @@ std::string read_file(const std::filesystem::path& path) {
 
 }  // namespace
 
-Workspace::Workspace() {
-  std::string name = (std::filesystem::temp_directory_path() / "motes-test-XXXXXX").string();
-  directory_ = mkdtemp(name.data());
-}
-
-Workspace::~Workspace() {
-  std::error_code error;
-  std::filesystem::remove_all(directory_, error);
-}
-
 Outcome Workspace::run(const std::string& arguments) const {
   const int status = std::system(fmt::format("cd '{}' && {{ '{}' {}\n}} >.out 2>.err </dev/null",
-                                             directory_.string(), MOTES_PROGRAM, arguments)
+                                             directory_.path().string(), MOTES_PROGRAM, arguments)
                                      .c_str());
   EXPECT_TRUE(WIFEXITED(status)) << arguments;
   return {WEXITSTATUS(status), read(captured[0]), read(captured[1])};
@@ -48,7 +37,7 @@ std::string Workspace::read(const std::string& name) const { return read_file(di
 
 std::size_t Workspace::num_files() const {
   std::size_t count = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(directory_)) {
+  for (const auto& entry : std::filesystem::directory_iterator(directory_.path())) {
     const std::string name = entry.path().filename();
     if (name != captured[0] && name != captured[1]) ++count;
   }

@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <string>
 
+#include "support/temporary_directory.h"
+
 namespace motes {
 
 struct Outcome {
@@ -14,11 +16,6 @@ struct Outcome {
 /// A new directory that goes with this object.
 class Workspace {
  public:
-  Workspace();
-  ~Workspace();
-  Workspace(const Workspace&) = delete;
-  Workspace& operator=(const Workspace&) = delete;
-
   /// Runs `motes ARGUMENTS` there, `arguments` as the shell takes them.
   Outcome run(const std::string& arguments) const;
   void write(const std::string& name, const std::string& content) const;
@@ -28,7 +25,7 @@ class Workspace {
   std::size_t num_files() const;
 
  private:
-  std::filesystem::path directory_;
+  TemporaryDirectory directory_;
 };
 
 }  // namespace motes

@@ -1,5 +1,5 @@
 // Every engine, on every instruction set and any number of threads, makes the reference's picture.
-// The tolerances are those of docs/field.md, "Samples".
+// The tolerances are those of docs/field.md, "Exactness".
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
