@@ -80,6 +80,7 @@ void take_header_line(const LineReader& lines, const HeaderLine& line, Header& h
   static constexpr std::array<std::string_view, 3> bounds{"xlo xhi", "ylo yhi", "zlo zhi"};
   static constexpr std::array<std::string_view, 3> edges{"avec", "bvec", "cvec"};
   const auto& v = line.values;
+  if (line.words.empty()) lines.fail("expected a keyword of the header behind the numbers");
   const auto bound = std::find(bounds.begin(), bounds.end(), line.words);
   const auto edge = std::find(edges.begin(), edges.end(), line.words);
   if (bound != bounds.end()) {

@@ -92,6 +92,8 @@ INSTANTIATE_TEST_SUITE_P(
     Texts, BadLammpsData,
     testing::Values(
         BadText{"NoHeader", "title\n\nAtoms\n\n1 1 0 0 0\n", "expected a header line 'N atoms'"},
+        BadText{"NoKeyword", "title\n2 atoms\n1 atom types\n0.5\n",
+                "a.data:4: expected a keyword of the header"},
         BadText{"NoAtoms", "title\n2 atoms\n1 atom types\n", "a section Atoms with 2 atoms"},
         BadText{"EmptyAtoms", "title\n2 atoms\n1 atom types\n\nAtoms\n\n",
                 "a.data:7: the file ends after 0 of 2 atoms"},
