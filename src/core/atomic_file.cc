@@ -24,6 +24,18 @@ std::filesystem::path temporary_name(const std::filesystem::path& target) {
   return target.parent_path() / fmt::format(".motes-{}-{}.tmp", getpid(), counter++);
 }
 
+std::string path_of(int descriptor) { return fmt::format("/proc/self/fd/{}", descriptor); }
+
+/// A file in `directory` that gets its name only when it is whole, so that not even a program that
+/// is killed leaves it behind; negative where the system has no such files.
+int open_nameless(const std::filesystem::path& directory) {
+  const char* const place = directory.empty() ? "." : directory.c_str();
+  const int descriptor = open(place, O_WRONLY | O_TMPFILE | O_CLOEXEC, 0666);
+  if (descriptor < 0 || access(path_of(descriptor).c_str(), F_OK) == 0) return descriptor;
+  close(descriptor);
+  return -1;
+}
+
 }  // namespace
 
 AtomicFile::AtomicFile(const std::filesystem::path& path) : path_(path) {
@@ -43,7 +55,11 @@ AtomicFile::AtomicFile(const std::filesystem::path& path) : path_(path) {
     descriptor_ = open(target_.c_str(), O_WRONLY | O_CLOEXEC);
   } else {
     fs::path name = temporary_name(target_);
-    descriptor_ = open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    descriptor_ = open_nameless(target_.parent_path());
+    nameless_ = descriptor_ >= 0;
+    if (!nameless_) {
+      descriptor_ = open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    }
     if (descriptor_ >= 0) temporary_ = std::move(name);
   }
   if (descriptor_ < 0) fail(errno);
@@ -68,6 +84,10 @@ void AtomicFile::commit() {
   assert(descriptor_ >= 0);
   // Some file systems tell of a full disk only here. What is no file has nothing to bring to disk.
   if (!temporary_.empty() && fsync(descriptor_) != 0) fail(errno);
+  if (nameless_ && linkat(AT_FDCWD, path_of(descriptor_).c_str(), AT_FDCWD, temporary_.c_str(),
+                          AT_SYMLINK_FOLLOW) != 0) {
+    fail(errno);
+  }
   if (close(std::exchange(descriptor_, -1)) != 0) fail(errno);
   if (temporary_.empty()) return;
   if (rename(temporary_.c_str(), target_.c_str()) != 0) fail(errno);

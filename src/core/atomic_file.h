@@ -7,7 +7,8 @@
 namespace motes {
 
 /// A file being written under a temporary name beside its own, which commit() renames to `path`.
-/// Without commit() the temporary is removed and what was at `path` stays as it was. Links are
+/// Without commit() the temporary is removed (and where the system can, it is not there before) and
+/// what was at `path` stays as it was. Links are
 /// followed; what is no regular file (/dev/stdout, a pipe) is written straight.
 /// Every failure throws Error(path, "cannot write: REASON").
 class AtomicFile {
@@ -31,6 +32,7 @@ class AtomicFile {
   std::filesystem::path target_;     ///< path_ with links followed
   std::filesystem::path temporary_;  ///< empty: nothing to rename or remove
   int descriptor_ = -1;
+  bool nameless_ = false;  ///< temporary_ appears only in commit()
 };
 
 /// Writes `bytes` to `path`, whole or not at all.

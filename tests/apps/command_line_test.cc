@@ -1,7 +1,9 @@
 // The contract of the command line: exit status, messages, what the options do, no half files.
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -163,6 +165,20 @@ TEST_F(CommandLine, AFailureHarmsNoOldFileAndLeavesNoneBehind) {
   EXPECT_EQ(workspace_.num_files(), before);
   succeed("render a.xyz -o a.png --size 8x8");
   EXPECT_NE(workspace_.read("a.png"), "old");
+  EXPECT_EQ(workspace_.num_files(), before);
+}
+
+TEST_F(CommandLine, AKilledProgramLeavesNoFile) {
+  const int nameless =
+      open(std::filesystem::temp_directory_path().c_str(), O_TMPFILE | O_WRONLY, 0600);
+  if (nameless < 0) GTEST_SKIP() << "this file system has no files without names";
+  close(nameless);
+  const std::size_t before = workspace_.num_files();
+  // It waits for points that never come, with its output open.
+  const Outcome outcome = run(
+      fmt::format("--version; sleep 1 | timeout -s KILL 0.5 '{}' probe a.xyz --points - -o out.csv",
+                  MOTES_PROGRAM));
+  EXPECT_NE(outcome.status, 0);
   EXPECT_EQ(workspace_.num_files(), before);
 }
 
