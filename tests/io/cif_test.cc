@@ -59,7 +59,8 @@ TEST(Cif, ReadsBlocksAsFrames) {
   const TemporaryFile file("a.cif", block + "C1 C 0.1 0 0 1\n" + "data_global\n_audit_date 1\n" +
                                         "data_b" + block.substr(9) +
                                         "C1 C 0.2 0 0 1\nC2 C 0 0 0 1\n");
-  const auto trajectory = open_trajectory(file.path(), {});
+  const ReadOptions options;
+  const auto trajectory = open_trajectory(file.path(), options);
   EXPECT_EQ(trajectory->num_frames(), 2u);
   EXPECT_EQ(trajectory->read_frame(0).size(), 2u);
   EXPECT_EQ(trajectory->read_frame(1).size(), 3u);
@@ -118,7 +119,8 @@ class SharedCifs : public testing::TestWithParam<SharedCif> {};
 TEST_P(SharedCifs, HaveTheNumbersThatTheirNotesGive) {
   const auto path = shared_file(std::string("files/") + GetParam().name);
   if (!path) GTEST_SKIP() << GetParam().name << " is not here";
-  const auto trajectory = open_trajectory(*path, {});
+  const ReadOptions options;
+  const auto trajectory = open_trajectory(*path, options);
   ASSERT_EQ(trajectory->num_frames(), GetParam().num_frames);
   for (std::size_t frame = 0; frame < GetParam().num_frames; ++frame) {
     EXPECT_EQ(trajectory->read_frame(frame).size(), GetParam().num_particles);

@@ -218,7 +218,8 @@ class SharedSnapshots : public testing::TestWithParam<SharedSnapshot> {};
 TEST_P(SharedSnapshots, HaveTheNumberOfParticlesThatTheirNotesGive) {
   const auto path = shared_file(GetParam().path);
   if (!path) GTEST_SKIP() << GetParam().path << " is not here";
-  const auto trajectory = open_trajectory(*path, {});
+  const ReadOptions options;
+  const auto trajectory = open_trajectory(*path, options);
   EXPECT_EQ(trajectory->format(), GetParam().format);
   EXPECT_EQ(trajectory->num_frames(), 1u);
   const ParticleSet particles = trajectory->read_frame(0);

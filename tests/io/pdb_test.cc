@@ -128,7 +128,8 @@ class SharedPdbs : public testing::TestWithParam<SharedPdb> {};
 TEST_P(SharedPdbs, HaveTheNumbersThatTheirNotesGive) {
   const auto path = shared_file(std::string("files/") + GetParam().name);
   if (!path) GTEST_SKIP() << GetParam().name << " is not here";
-  const auto trajectory = open_trajectory(*path, {});
+  const ReadOptions options;
+  const auto trajectory = open_trajectory(*path, options);
   EXPECT_EQ(trajectory->format(), "PDB");
   EXPECT_EQ(trajectory->num_frames(), GetParam().num_frames);
   EXPECT_EQ(trajectory->read_frame(GetParam().num_frames - 1).size(), GetParam().num_particles);
