@@ -336,6 +336,7 @@ TEST(ReferenceRender, LeavingOutDistantKernelsChangesNothing) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> unit(-1, 1);
   std::vector<Point3d> centers;
+  centers.reserve(200);
   for (int i = 0; i < 200; ++i) {
     centers.push_back({3 * unit(random), 3 * unit(random), 3 * unit(random)});
   }

@@ -164,6 +164,7 @@ TEST(Engines, FarAwayThroughANarrowView) {
 
 TEST(Engines, KernelsSmallerThanAPixel) {
   std::vector<Point3d> centers;
+  centers.reserve(40);
   for (int i = 0; i < 40; ++i) centers.push_back({0.7 * i - 14, 0.3 * ((i * 7) % 40) - 6, 0.1 * i});
   PlainScene s = plain_scene(centers, 60);
   s.scene.fields[0].radius = {0.15F};
@@ -246,8 +247,9 @@ PlainScene lattice(int n, double distance, double extinction) {
     return 0.6 * (static_cast<double>(state >> 8) / (1 << 23) - 1);
   };
   for (int i = 0; i < n * n * n; ++i) {
-    const double x = 2.475 * (i % n) + jitter(), y = 2.475 * (i / n % n) + jitter();
-    centers.push_back({x, y, 2.475 * (i / (n * n)) + jitter()});
+    const int column = i % n, row = i / n % n, layer = i / (n * n);
+    const double x = 2.475 * column + jitter(), y = 2.475 * row + jitter();
+    centers.push_back({x, y, 2.475 * layer + jitter()});
     radii.push_back(i % 3 == 0 ? 1.11F : 0.66F);
   }
   PlainScene s = plain_scene(centers, 1);

@@ -69,6 +69,7 @@ class OnePlane {
   /// Those of all pixels, rows from the top.
   std::vector<std::optional<Sample>> samples() const {
     std::vector<std::optional<Sample>> all;
+    all.reserve(width * height);
     for (int i = 0; i < width * height; ++i) all.push_back(sample(i % width, i / width));
     return all;
   }
