@@ -1,6 +1,8 @@
 // Opens scenes and reads their particles.
 #include "motes/input.h"
 
+#include <chrono>
+
 #include "core/error.h"
 #include "io/reader.h"
 
@@ -13,11 +15,6 @@ Scene open_scene(const std::filesystem::path& path) {
   return scene;
 }
 
-double milliseconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
-      .count();
-}
-
 Input read_particles(const Scene& scene, Console& console) {
   const auto start = std::chrono::steady_clock::now();
   const ReadOptions options{scene.types, &console, &console.warnings()};
@@ -25,7 +22,9 @@ Input read_particles(const Scene& scene, Console& console) {
   Input input;
   input.format = trajectory->format();
   input.particles = trajectory->read_frame(scene.frame);
-  input.read_ms = milliseconds_since(start);
+  const std::chrono::duration<double, std::milli> elapsed =
+      std::chrono::steady_clock::now() - start;
+  input.read_ms = elapsed.count();
   console.print_warnings();
   if (input.particles.size() == 0) throw Error(scene.data_path, "has no particles in this frame");
   return input;

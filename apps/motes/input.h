@@ -23,9 +23,6 @@ struct Input {
 /// Reads the scene's frame of its data.
 Input read_particles(const Scene& scene, Console& console);
 
-/// Milliseconds since `start`.
-double milliseconds_since(std::chrono::steady_clock::time_point start);
-
 /// The fields of the scene, ready to be sampled.
 std::vector<FieldSource> make_field_sources(const std::vector<Field>& fields, const Kernel& kernel,
                                             const ParticleSet& particles, Console& console);
