@@ -1,5 +1,5 @@
-// Feeds the scene parser with any bytes: it gives a scene that survives being written and read again,
-// or throws Error.
+// Feeds the scene parser with any bytes: it gives a scene that survives being written and read
+// again, or throws Error.
 #include <cstdint>
 #include <cstdlib>
 #include <string_view>

@@ -87,10 +87,10 @@ TEST(Pdb, MakesTriclinicCells) {
 }
 
 TEST(Pdb, KeepsTheFirstOfAlternateLocations) {
-  const ParticleSet particles =
-      read("ATOM      1  CA AALA A   1       1.000   2.000   3.000  0.50 20.00           C\n"
-           "ATOM      2  CA BALA A   1       9.000   2.000   3.000  0.50 20.00           C\n"
-           "ATOM      3  CA AALA A   2       5.000   2.000   3.000  0.50 20.00           C\n");
+  const ParticleSet particles = read(
+      "ATOM      1  CA AALA A   1       1.000   2.000   3.000  0.50 20.00           C\n"
+      "ATOM      2  CA BALA A   1       9.000   2.000   3.000  0.50 20.00           C\n"
+      "ATOM      3  CA AALA A   2       5.000   2.000   3.000  0.50 20.00           C\n");
   ASSERT_EQ(particles.size(), 2u);
   EXPECT_EQ(particles.position(1).x, 5);
 }
