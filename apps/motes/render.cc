@@ -16,8 +16,7 @@
 #include "motes/input.h"
 #include "motes/scene_options.h"
 #include "render/renderer.h"
-#include "render/view_profile.h"
-#include "scene/fit.h"
+#include "render/resolve.h"
 
 namespace motes {
 namespace {
@@ -68,23 +67,6 @@ std::string to_json(const Statistics& s) {
   return out.dump(2) + "\n";
 }
 
-/// Fills in what the scene leaves open from the fields and what the view shows of them.
-ResolvedScene resolve(const Scene& scene, const std::vector<Field>& fields,
-                      std::vector<FieldSource> sources, const KernelSet& kernels) {
-  ResolvedScene resolved;
-  resolved.render = scene.render;
-  const double aspect = static_cast<double>(scene.render.width) / scene.render.height;
-  resolved.camera = fit_camera(scene, visible_box(sources, kernels.centers), aspect);
-  resolved.step_size = scene.render.step_size.value_or(default_step_size(sources, kernels.box()));
-  const auto profiles =
-      sample_view(kernels, resolved.camera, scene.render.width, scene.render.height);
-  for (std::size_t f = 0; f < fields.size(); ++f) {
-    resolved.transfer_functions.push_back(fit_transfer_function(
-        fields[f].transfer_function, sources[f].species_color, profiles[f], fields.size()));
-  }
-  return resolved;
-}
-
 /// Renders one frame, or more to time them: the first of several only warms up.
 Framebuffer render_frames(const Renderer& renderer, const ResolvedScene& scene,
                           const Options& options, Console& console, Statistics& statistics) {
@@ -129,9 +111,9 @@ void run(const Options& options) {
     const Input input = read_particles(scene, console);
     statistics.read_ms = input.read_ms;
     const auto fields = expand_fields(scene, input.particles);
-    auto sources = make_field_sources(fields, scene.kernel, input.particles, console);
+    const auto sources = make_field_sources(fields, scene.kernel, input.particles, console);
     renderer.emplace(input.particles, sources);
-    resolved = resolve(scene, fields, std::move(sources), renderer->kernels());
+    resolved = resolve(scene, fields, sources, renderer->kernels());
   }
   statistics.build_ms = renderer->build_ms();
   statistics.particles = renderer->kernels().size();

@@ -1,13 +1,30 @@
-// Opens a file of particles and says what is in it: render_example FILE
+// Renders a file of particles with all defaults: render_example FILE PICTURE.png
 #include <motes/motes.h>
 
 #include <iostream>
+#include <vector>
 
 int main(int argc, char** argv) try {
-  const motes::ReadOptions options;
-  const auto trajectory = motes::open_trajectory(argc > 1 ? argv[1] : "", options);
-  const motes::ParticleSet particles = trajectory->read_frame(0);
-  std::cout << trajectory->format() << ": " << particles.size() << " particles\n";
+  if (argc != 3) throw motes::Error("usage: render_example FILE PICTURE.png");
+  motes::Warnings warnings;
+  const motes::ReadOptions options{.warnings = &warnings};
+  const motes::ParticleSet particles = motes::open_trajectory(argv[1], options)->read_frame(0);
+
+  // What a scene file would say; empty, everything is fitted to the data.
+  const motes::Scene scene;
+  const auto fields = motes::expand_fields(scene, particles);
+  std::vector<motes::FieldSource> sources;
+  for (const auto& field : fields) {
+    sources.push_back(motes::make_field_source(particles, field, scene.kernel, warnings));
+  }
+
+  const motes::Renderer renderer(particles, sources);
+  const auto resolved = motes::resolve(scene, fields, sources, renderer.kernels());
+  const motes::Framebuffer image = renderer.render(resolved, {});
+  motes::write_image(argv[2], image, scene.render.termination_opacity, scene.render.background);
+
+  for (const auto& line : warnings.lines()) std::cerr << line << '\n';
+  std::cout << argv[2] << ": " << particles.size() << " particles\n";
   return 0;
 } catch (const motes::Error& error) {
   std::cerr << error.what() << '\n';
