@@ -34,7 +34,7 @@ namespace cif = gemmi::cif;
     return number;
   };
   const std::string_view source = "content:";
-  if (!message.starts_with(source)) throw Error(path, printable(message, 200));
+  if (message.substr(0, source.size()) != source) throw Error(path, printable(message, 200));
   message.remove_prefix(source.size());
   const auto line = cut_number();
   cut_number();
@@ -255,7 +255,7 @@ ParticleSet read_crystal(const std::filesystem::path& path, cif::Block& block, c
 std::unique_ptr<Trajectory> open_cif(const std::filesystem::path& path,
                                      const ReadOptions& options) {
   const std::string content = read_decompressed(path, options);
-  if (!content.ends_with('\n') && options.warnings != nullptr) {
+  if ((content.empty() || content.back() != '\n') && options.warnings != nullptr) {
     options.warnings->add(
         fmt::format("{}: the last line has no end; it may be cut short", printable(path.string())));
   }
@@ -288,8 +288,9 @@ std::unique_ptr<Trajectory> open_cif(const std::filesystem::path& path,
 bool matches_cif(std::string_view head) {
   while (!head.empty()) {
     const std::string_view line = trim(head.substr(0, head.find('\n')));
-    if (!line.empty() && !line.starts_with('#')) {
-      return line.starts_with("data_") || line.starts_with("DATA_");
+    if (!line.empty() && line.front() != '#') {
+      const std::string_view start = line.substr(0, 5);
+      return start == "data_" || start == "DATA_";
     }
     head.remove_prefix(std::min(head.find('\n'), head.size() - 1) + 1);
   }
