@@ -140,7 +140,7 @@ std::string read_head(const std::filesystem::path& path, std::size_t size) {
 std::string read_decompressed(const std::filesystem::path& path, const ReadOptions& options) {
   ByteStream stream(path);
   const std::string activity = reading_activity(path);
-  const std::size_t block_bytes = std::size_t{4} << 20;
+  const std::size_t block_bytes = std::size_t{256} << 10;
   std::string content;
   for (std::size_t n = block_bytes; n > 0;) {
     const std::size_t size = content.size();
