@@ -110,10 +110,11 @@ void run(const Options& options) {
     // The particles as they were read are gone before the first frame: only kernels stay.
     const Input input = read_particles(scene, console);
     statistics.read_ms = input.read_ms;
+    color_by_species(scene, input.particles);
     const auto fields = expand_fields(scene, input.particles);
     const auto sources = make_field_sources(fields, scene.kernel, input.particles, console);
     renderer.emplace(input.particles, sources);
-    resolved = resolve(scene, fields, sources, renderer->kernels());
+    resolved = resolve(scene, input.particles, fields, sources, renderer->kernels());
   }
   statistics.build_ms = renderer->build_ms();
   statistics.particles = renderer->kernels().size();

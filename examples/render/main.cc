@@ -19,7 +19,7 @@ int main(int argc, char** argv) try {
   }
 
   const motes::Renderer renderer(particles, sources);
-  const auto resolved = motes::resolve(scene, fields, sources, renderer.kernels());
+  const auto resolved = motes::resolve(scene, particles, fields, sources, renderer.kernels());
   const motes::Framebuffer image = renderer.render(resolved, {});
   motes::write_image(argv[2], image, scene.render.termination_opacity, scene.render.background);
 

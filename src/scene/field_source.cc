@@ -87,6 +87,9 @@ std::vector<float> gather(const std::vector<float>& values,
   return gathered;
 }
 
+/// More colours are hard to tell apart, and each field costs time.
+constexpr std::size_t max_colored_species = 8;
+
 Color species_color(const ParticleSet& particles, const std::vector<std::uint32_t>& index) {
   // For species that are no elements: colours that are easily told apart, also by colour-blind
   // people (Okabe and Ito 2008).
@@ -171,6 +174,24 @@ FieldSource make_field_source(const ParticleSet& particles, const Field& field,
   source.weight = gather(weight, source.index);
   source.species_color = species_color(particles, source.index);
   return source;
+}
+
+void color_by_species(Scene& scene, const ParticleSet& particles) {
+  if (particles.find_property("radius") != nullptr) return;
+  std::vector<bool> present(particles.species_names.size());
+  for (const std::uint16_t s : particles.species) present[s] = true;
+  std::size_t num_present = 0;
+  for (std::size_t s = 0; s < present.size(); ++s) {
+    if (!present[s]) continue;
+    if (find_element(particles.species_names[s]) == nullptr) return;
+    ++num_present;
+  }
+  if (num_present < 2 || num_present > max_colored_species) return;
+  if (scene.fields.empty()) scene.fields.emplace_back().name = "all";
+  Field& field = scene.fields.front();
+  const bool open = field.transfer_function.index() == 0 && field.select == Selection{};
+  if (scene.fields.size() > 1 || !open) return;
+  field.transfer_function = NamedTransferFunction{std::string(species_colors), {}, {}, {}};
 }
 
 std::vector<Field> expand_fields(const Scene& scene, const ParticleSet& particles) {

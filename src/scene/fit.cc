@@ -12,12 +12,16 @@ namespace motes {
 namespace {
 
 constexpr double max_samples = 2048;            // along the diagonal of the volume
+constexpr double small_area = 0.05;             // of what the Gaussians cover
 constexpr std::size_t radii_looked_at = 65536;  // of one field: enough for a quantile
 
 // Where values of one sign span more decades than this, their scale is logarithmic.
 constexpr double log_decades = 2.5;
-// Of the rays that meet matter, on average. Several fields share it.
+// Where 40 % of the values lie within this factor, they are an even background.
+constexpr double even = 2;
+// Of the rays that meet matter, on average: neither fog nor block. Several fields share it.
 constexpr double target_opacity = 0.7;
+constexpr float paleness = 0.35f;  // of a species' colour at the largest values: shape shows
 constexpr const char* default_map = "viridis";
 
 /// The value below which `fraction` of `values` lie; reorders them. Precondition: not empty.
@@ -59,8 +63,14 @@ Range fit_range(const RayProfiles& profiles, std::optional<bool> log_scale) {
   const double largest = quantile(positive, 0.999);
   const double small = quantile(positive, 0.05);
   range.log_scale = log_scale.value_or(std::log10(largest / small) > log_decades);
-  // Over decades most of the volume is all but empty: voids, which would veil the rest.
-  range.low = quantile(positive, range.log_scale ? 0.7 : 0.5);
+  range.low = quantile(positive, 0.5);
+  if (range.log_scale) {
+    // Over decades most of the volume is all but empty: voids, which would veil the rest; unless it
+    // is an even background, of which a range that began in it would show the ripples alone.
+    const double background = quantile(positive, 0.3);
+    range.low = quantile(positive, 0.7);
+    if (range.low < even * background) range.low = 0.5 * background;
+  }
   range.high = largest;
   if (!(range.low < range.high)) {  // (nearly) one value everywhere: a slab
     range.low = 0.5 * range.high;
@@ -108,38 +118,69 @@ double fit_extinction(const RayProfiles& profiles, const Range& range, double op
 }
 
 TransferFunction one_color(const Color& color, const Range& range, double extinction) {
+  const auto paler = [](float channel) { return channel + paleness * (1 - channel); };
+  const Color pale{paler(color.r), paler(color.g), paler(color.b)};
   TransferFunction function;
   function.log_scale = range.log_scale;
-  if (range.both_signs) function.points.push_back({range.low, color, extinction});
+  if (range.both_signs) function.points.push_back({range.low, pale, extinction});
   const double start = range.both_signs ? 0 : range.low;
   function.points.push_back({start, color, 0});
-  function.points.push_back({range.high, color, extinction});
+  function.points.push_back({range.high, pale, extinction});
   return function;
 }
 
 }  // namespace
 
-Bounds3d visible_box(const std::vector<FieldSource>& fields, const Bounds3d& centers) {
-  std::vector<float> supports;
-  for (const FieldSource& field : fields) {
-    for_some_radii(field, [&](float radius) {
-      supports.push_back(static_cast<float>(field.kernel.support_factor * radius));
-    });
-  }
-  return centers.extended(quantile(supports, 0.5));
-}
-
 double default_step_size(const std::vector<FieldSource>& fields, const Bounds3d& box) {
   std::vector<float> radii;
+  double area = 0;
   for (const FieldSource& field : fields) {
-    for_some_radii(field, [&radii](float radius) { radii.push_back(radius); });
+    for_some_radii(field, [&](float radius) {
+      radii.push_back(radius);
+      area += double{radius} * radius;
+    });
   }
-  return std::max(0.5 * quantile(radii, 0.05), length(box.diagonal()) / max_samples);
+  std::sort(radii.begin(), radii.end());
+  double below = 0;
+  const auto small = std::find_if(radii.begin(), radii.end(), [&](float radius) {
+    return (below += double{radius} * radius) > small_area * area;
+  });
+  const double radius = small == radii.end() ? radii.back() : *small;
+  return std::max(0.5 * radius, length(box.diagonal()) / max_samples);
+}
+
+double fit_opacity(const std::vector<RayProfiles>& profiles) {
+  if (profiles.size() < 2) return target_opacity;
+  // How many rays meet 1, 2, ... fields.
+  std::vector<double> num_rays(profiles.size());
+  double sum = 0;
+  for (std::size_t ray = 0; ray < profiles[0].spacing.size(); ++ray) {
+    std::size_t met = 0;
+    for (const RayProfiles& field : profiles) {
+      const auto value = [&](std::size_t k) {
+        return field.values.begin() + static_cast<std::ptrdiff_t>(field.ray_begin[k]);
+      };
+      if (std::any_of(value(ray), value(ray + 1), [](float v) { return v != 0; })) ++met;
+    }
+    if (met == 0) continue;
+    ++num_rays[met - 1];
+    ++sum;
+  }
+  double low = 0, high = target_opacity;
+  for (int step = 0; step < 30; ++step) {
+    const double opacity = (low + high) / 2;
+    double total = 0;
+    for (std::size_t met = 0; met < num_rays.size(); ++met) {
+      total += num_rays[met] * (1 - std::pow(1 - opacity, static_cast<double>(met + 1)));
+    }
+    (total < target_opacity * sum ? low : high) = opacity;
+  }
+  return high;
 }
 
 TransferFunction fit_transfer_function(const decltype(Field::transfer_function)& wish,
                                        const Color& species_color, const RayProfiles& profiles,
-                                       std::size_t num_fields) {
+                                       double opacity) {
   if (const auto* given = std::get_if<TransferFunction>(&wish)) return *given;
   NamedTransferFunction named;
   if (const auto* given = std::get_if<NamedTransferFunction>(&wish)) named = *given;
@@ -153,9 +194,8 @@ TransferFunction fit_transfer_function(const decltype(Field::transfer_function)&
   } else {
     range = fit_range(profiles, named.log_scale);
   }
-  const double share = 1 - std::pow(1 - target_opacity, 1 / static_cast<double>(num_fields));
   const double extinction =
-      named.extinction ? *named.extinction : fit_extinction(profiles, range, share);
+      named.extinction ? *named.extinction : fit_extinction(profiles, range, opacity);
 
   if (named.name == species_colors) return one_color(species_color, range, extinction);
   TransferFunction function =

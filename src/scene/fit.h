@@ -10,18 +10,28 @@
 
 namespace motes {
 
-/// The scene's camera; what it leaves open is fitted so that the whole of `box` is in an image of
-/// `aspect` = width / height. The view is oblique, mostly along the box's thinnest axis, so that
-/// its largest face is seen; y is up, or z where the view is mostly along y or x. Precondition:
-/// `box` is not empty. Throws Error as camera_axes() does.
-Camera fit_camera(const Scene& scene, const Bounds3d& box, double aspect);
+/// A particle as a camera should show it; file's lengths, world axes.
+struct VisibleSphere {
+  Point3d center;
+  double radius = 0;
+};
 
-/// The box that a camera should show: that of the particles' centres with a typical support around
-/// it (the volume's own is drawn out by the single largest one).
-Bounds3d visible_box(const std::vector<FieldSource>& fields, const Bounds3d& centers);
+/// The fields' particles, or some of them where there are very many, each as large as its Gaussian
+/// is easily seen; those that are far larger than is typical (in the voids of a cosmological box)
+/// are taken for smaller.
+std::vector<VisibleSphere> visible_spheres(const ParticleSet& particles,
+                                           const std::vector<FieldSource>& fields);
 
-/// Half of a small radius (the 5 % quantile over all fields' particles), which samples the
-/// Gaussians of nearly all particles well; but at most 2048 samples along the diagonal of `box`.
+/// The scene's camera; what it leaves open is fitted so that the spheres just fill an image of
+/// `aspect` = width / height. The view is oblique, mostly along their box's thinnest axis, so that
+/// its largest face is seen; y is up, or z where the view is mostly along y or x. Strays do not
+/// count: at most one sphere in a thousand, so far away that the others would be small for it.
+/// Precondition: there are spheres. Throws Error as camera_axes() does.
+Camera fit_camera(const Scene& scene, const std::vector<VisibleSphere>& spheres, double aspect);
+
+/// Half of a small radius: of what all fields' Gaussians cover in a picture (radius squared), 5 %
+/// belongs to smaller ones. So it samples nearly all that is seen well, and a few tiny particles do
+/// not make every picture slow. But at most 2048 samples along the diagonal of `box`.
 double default_step_size(const std::vector<FieldSource>& fields, const Bounds3d& box);
 
 /// Values of a field along rays of the view, at equal distances on each ray.
@@ -31,18 +41,21 @@ struct RayProfiles {
   std::vector<double> spacing;         ///< length between two values of a ray; one a ray
 };
 
+/// How opaque each of several fields should make the rays that meet it, so that rays that meet
+/// matter come to the opacity of a good picture (0.7 on average). `profiles`: one a field, of the
+/// same rays.
+double fit_opacity(const std::vector<RayProfiles>& profiles);
+
 /// The transfer function that `wish` (or nothing: a default) comes to in this view. What it leaves
 /// open:
-/// - the range spans from the median of the values that are not 0 to nearly the largest, on a
-///   logarithmic scale from their 70 % quantile where they span decades; for values of both signs
-///   it is symmetric about 0;
-/// - the extinction rises linearly over the range so that rays through matter are on average half
-/// to
-///   three quarters opaque: neither fog nor a solid block.
-/// `species_color` is the colour of species_colors. `num_fields` is how many fields share the
-/// picture. Throws Error for a range that cannot be.
+/// - the range spans from the typical value where there is matter to nearly the largest (for values
+///   of both signs symmetric about 0), on a logarithmic scale where values span decades;
+/// - the extinction rises linearly over the range so that rays through matter get `opacity` on
+///   average.
+/// `species_color` is the colour of species_colors, paler towards the end of the range. Throws
+/// Error for a range that cannot be.
 TransferFunction fit_transfer_function(const decltype(Field::transfer_function)& wish,
                                        const Color& species_color, const RayProfiles& profiles,
-                                       std::size_t num_fields);
+                                       double opacity);
 
 }  // namespace motes

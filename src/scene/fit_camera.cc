@@ -1,19 +1,25 @@
 // A camera that shows all of the data from a pleasing side.
 #include <algorithm>
-#include <array>
-#include <limits>
 #include <numbers>
+#include <random>
 
 #include "scene/fit.h"
 
 namespace motes {
 namespace {
 
-constexpr double margin = 0.97;       // of the image, that the data may fill
+constexpr double margin = 0.96;       // of the image, that the data may fill
 constexpr double default_fov = 45;    // degrees
 constexpr double nearly_cubic = 0.8;  // thinnest by largest side
 constexpr double flat = 1e-3;         // likewise: seen straight, as obliquely it would be a line
 constexpr double nearly_parallel = 0.99;  // cosine
+constexpr double easily_seen = 1.75;      // standard deviations: there a Gaussian is at a fifth
+constexpr double large = 2.5;             // times the middle radius
+constexpr std::size_t particles_looked_at = 1 << 18;  // of one field
+
+// Strays: one particle in so many at most, farther out than this times the extent of the others.
+constexpr std::size_t stray_share = 1000;
+constexpr double stray_distance = 0.5;
 
 Vector3d unit(int axis) {
   Vector3d v;
@@ -51,19 +57,63 @@ Vector3d default_up(const Vector3d& view, int axis) {
   return std::abs(dot(normalize(view), first)) < nearly_parallel ? first : second;
 }
 
-std::array<Point3d, 8> corners_of(const Bounds3d& box) {
-  std::array<Point3d, 8> corners;
-  for (int k = 0; k < 8; ++k) {
-    corners[static_cast<std::size_t>(k)] = {k & 1 ? box.max.x : box.min.x,
-                                            k & 2 ? box.max.y : box.min.y,
-                                            k & 4 ? box.max.z : box.min.z};
+/// The largest of `values`, without those of strays; reorders them. Precondition: not empty.
+double largest_but_strays(std::vector<double>& values) {
+  const std::size_t strays = values.size() / stray_share;
+  const double largest = *std::max_element(values.begin(), values.end());
+  const auto at = [&values](std::size_t rank) {
+    const auto it = values.begin() + static_cast<std::ptrdiff_t>(rank);
+    std::nth_element(values.begin(), it, values.end());
+    return *it;
+  };
+  const double high = at(values.size() - 1 - strays), low = at(strays);
+  return largest - high > stray_distance * (high - low) ? high : largest;
+}
+
+/// The largest of measure(sphere), without strays'.
+template <class F>
+double largest_of(const std::vector<VisibleSphere>& spheres, F&& measure) {
+  std::vector<double> values(spheres.size());
+  std::transform(spheres.begin(), spheres.end(), values.begin(), measure);
+  return largest_but_strays(values);
+}
+
+Bounds3d box_of(const std::vector<VisibleSphere>& spheres) {
+  Point3d corner[2];
+  for (int axis = 0; axis < 3; ++axis) {
+    corner[0][axis] =
+        -largest_of(spheres, [axis](const VisibleSphere& s) { return s.radius - s.center[axis]; });
+    corner[1][axis] =
+        largest_of(spheres, [axis](const VisibleSphere& s) { return s.radius + s.center[axis]; });
   }
-  return corners;
+  return {corner[0], corner[1]};
 }
 
 }  // namespace
 
-Camera fit_camera(const Scene& scene, const Bounds3d& box, double aspect) {
+std::vector<VisibleSphere> visible_spheres(const ParticleSet& particles,
+                                           const std::vector<FieldSource>& fields) {
+  std::vector<VisibleSphere> spheres;
+  std::mt19937 random(1);  // evenly many would beat with a lattice
+  for (const FieldSource& field : fields) {
+    const double extent = std::min(field.kernel.support_factor, easily_seen);
+    const std::size_t stride = 1 + field.index.size() / particles_looked_at;
+    for (std::size_t begin = 0; begin < field.index.size(); begin += stride) {
+      const std::size_t i = std::min(begin + random() % stride, field.index.size() - 1);
+      spheres.push_back({particles.position(field.index[i]), extent * field.radius_of(i)});
+    }
+  }
+  std::vector<double> radii(spheres.size());
+  std::transform(spheres.begin(), spheres.end(), radii.begin(),
+                 [](const VisibleSphere& sphere) { return sphere.radius; });
+  const auto middle = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
+  std::nth_element(radii.begin(), middle, radii.end());
+  for (VisibleSphere& sphere : spheres) sphere.radius = std::min(sphere.radius, large * *middle);
+  return spheres;
+}
+
+Camera fit_camera(const Scene& scene, const std::vector<VisibleSphere>& spheres, double aspect) {
+  const Bounds3d box = box_of(spheres);
   const Vector3d sides = box.diagonal();
   const double diagonal = length(sides) > 0 ? length(sides) : 1;
   Camera camera;
@@ -79,31 +129,39 @@ Camera fit_camera(const Scene& scene, const Bounds3d& box, double aspect) {
   const CameraAxes axes = camera_axes(camera);
   if (scene.eye) return camera;
 
-  // As near as all corners allow. With the camera moved by (x, y) across the view, a corner at (u,
-  // v, w) in camera axes about the target is in the image where |u - x| <= tan_x (distance + w),
-  // and so in y.
+  // As near as all spheres allow. With the camera moved by (x, y) across the view, a sphere of
+  // radius r at (u, v, w) in camera axes about the target is in the image where
+  // |u - x| + r sqrt(1 + tan_x^2) <= tan_x (distance + w), and so in y.
   const double tan_y =
       margin *
       (camera.orthographic_height ? 1 : std::tan(camera.fov_degrees * std::numbers::pi / 360));
   const double tan_x = tan_y * aspect;
-  constexpr double none = std::numeric_limits<double>::lowest();
-  double right = none, left = none, top = none, bottom = none, nearest = none;
-  for (const Point3d& corner : corners_of(box)) {
-    const Vector3d v = corner - camera.target;
-    const double w = camera.orthographic_height ? 0 : dot(v, axes.forward);
-    right = std::max(right, dot(v, axes.x) / tan_x - w);
-    left = std::max(left, -dot(v, axes.x) / tan_x - w);
-    top = std::max(top, dot(v, axes.y) / tan_y - w);
-    bottom = std::max(bottom, -dot(v, axes.y) / tan_y - w);
-    nearest = std::max(nearest, -dot(v, axes.forward));
-  }
+  // Smallest distance that shows all spheres on one side, towards `across`.
+  const auto distance_for = [&](const Vector3d& across, double tangent) {
+    const double around = std::sqrt(1 + tangent * tangent);
+    return largest_of(spheres, [&](const VisibleSphere& sphere) {
+      const Vector3d v = sphere.center - camera.target;
+      const double w = camera.orthographic_height ? 0 : dot(v, axes.forward);
+      return (dot(v, across) + sphere.radius * around) / tangent - w;
+    });
+  };
+  const double right = distance_for(axes.x, tan_x), left = distance_for(-axes.x, tan_x);
+  const double top = distance_for(axes.y, tan_y), bottom = distance_for(-axes.y, tan_y);
   double distance = std::max({right, left, top, bottom});
   if (!scene.target) {
     camera.target =
         camera.target + tan_x * (right - left) / 2 * axes.x + tan_y * (top - bottom) / 2 * axes.y;
     distance = std::max(right + left, top + bottom) / 2;
   }
-  if (camera.orthographic_height) distance = nearest + 0.01 * diagonal;
+  if (camera.orthographic_height) {
+    // In front of all, strays too.
+    double nearest = 0;
+    for (const VisibleSphere& sphere : spheres) {
+      const double depth = dot(sphere.center - camera.target, axes.forward);
+      nearest = std::max(nearest, sphere.radius - depth);
+    }
+    distance = nearest + 0.01 * diagonal;
+  }
   camera.eye = camera.target - std::max(distance, 1e-3 * diagonal) * axes.forward;
   return camera;
 }

@@ -146,6 +146,11 @@ std::string scene_to_json(const Scene& scene, const std::filesystem::path& direc
 /// properties or a bad expression, naming what there is.
 std::vector<std::uint32_t> select_particles(const ParticleSet& particles, const Selection& select);
 
+/// Gives a scene whose one field takes all particles and has no transfer function (or that has no
+/// field) the species' colours, where there are two to eight species, all of them elements, and no
+/// particle has a size of its own: for molecules and solids, not for densities.
+void color_by_species(Scene& scene, const ParticleSet& particles);
+
 /// The fields that a scene comes to with these particles: one of all particles where it has none; a
 /// field with species_colors and several species becomes one field a species; all have names.
 /// Throws Error.
