@@ -292,7 +292,7 @@ void add_picture_options(CLI::App& command, SceneChanges& changes) {
   add_camera_options(command, changes);
   add_option(command, changes, "--transfer-function", "NAME|FILE.json",
              fmt::format("colours and opacity: {}, species,\nor a file with points; names are "
-                         "fitted to the values in view (default: viridis)",
+                         "fitted to the values in view\n(default: species where they are elements, else viridis)",
                          fmt::join(color_map_names(), ", ")),
              read_transfer_function_option);
   add_lighting_options(command, changes);

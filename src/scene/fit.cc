@@ -17,8 +17,6 @@ constexpr std::size_t radii_looked_at = 65536;  // of one field: enough for a qu
 
 // Where values of one sign span more decades than this, their scale is logarithmic.
 constexpr double log_decades = 2.5;
-// Where 40 % of the values lie within this factor, they are an even background.
-constexpr double even = 2;
 // Of the rays that meet matter, on average: neither fog nor block. Several fields share it.
 constexpr double target_opacity = 0.7;
 constexpr float paleness = 0.35f;  // of a species' colour at the largest values: shape shows
@@ -63,14 +61,8 @@ Range fit_range(const RayProfiles& profiles, std::optional<bool> log_scale) {
   const double largest = quantile(positive, 0.999);
   const double small = quantile(positive, 0.05);
   range.log_scale = log_scale.value_or(std::log10(largest / small) > log_decades);
-  range.low = quantile(positive, 0.5);
-  if (range.log_scale) {
-    // Over decades most of the volume is all but empty: voids, which would veil the rest; unless it
-    // is an even background, of which a range that began in it would show the ripples alone.
-    const double background = quantile(positive, 0.3);
-    range.low = quantile(positive, 0.7);
-    if (range.low < even * background) range.low = 0.5 * background;
-  }
+  // Over decades most of the volume is all but empty: voids, which would veil the rest.
+  range.low = quantile(positive, range.log_scale ? 0.7 : 0.5);
   range.high = largest;
   if (!(range.low < range.high)) {  // (nearly) one value everywhere: a slab
     range.low = 0.5 * range.high;

@@ -48,8 +48,9 @@ double fit_opacity(const std::vector<RayProfiles>& profiles);
 
 /// The transfer function that `wish` (or nothing: a default) comes to in this view. What it leaves
 /// open:
-/// - the range spans from the typical value where there is matter to nearly the largest (for values
-///   of both signs symmetric about 0), on a logarithmic scale where values span decades;
+/// - the range spans from the median of the values that are not 0 to nearly the largest, on a
+///   logarithmic scale from their 70 % quantile where they span decades; for values of both signs
+///   it is symmetric about 0;
 /// - the extinction rises linearly over the range so that rays through matter get `opacity` on
 ///   average.
 /// `species_color` is the colour of species_colors, paler towards the end of the range. Throws

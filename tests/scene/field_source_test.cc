@@ -160,6 +160,38 @@ TEST(ExpandFields, SpeciesColoursMakeAFieldOfEachSpecies) {
   EXPECT_GT(oxygen.r, 4 * oxygen.g);
 }
 
+TEST(ColorBySpecies, IsTheDefaultWhereSpeciesAreElements) {
+  const NamedTransferFunction species{"species", {}, {}, {}};
+  const auto colored = [](Scene scene, const ParticleSet& particles) {
+    color_by_species(scene, particles);
+    return scene.fields;
+  };
+  ASSERT_EQ(colored({}, silica()).size(), 1u);
+  EXPECT_EQ(std::get<NamedTransferFunction>(colored({}, silica())[0].transfer_function), species);
+
+  // What a scene says stays.
+  Scene scene;
+  scene.fields.resize(1);
+  scene.fields[0].transfer_function = NamedTransferFunction{"magma", {}, {}, {}};
+  EXPECT_EQ(colored(scene, silica()), scene.fields);
+  scene.fields[0] = {};
+  scene.fields[0].select.species = {"Si"};
+  EXPECT_EQ(colored(scene, silica()), scene.fields);
+  scene.fields.assign(2, {});
+  EXPECT_EQ(colored(scene, silica()), scene.fields);
+
+  // One species, beads that are no elements, and densities keep the colour map.
+  ParticleSet particles = silica();
+  particles.species = {1, 1, 1, 1};
+  EXPECT_TRUE(colored({}, particles).empty());
+  particles = silica();
+  particles.species_names[1] = "bead";
+  EXPECT_TRUE(colored({}, particles).empty());
+  particles = silica();
+  particles.properties.push_back({"radius", {1, 1, 1, 1}});
+  EXPECT_TRUE(colored({}, particles).empty());
+}
+
 TEST(ExpandFields, RefusesMoreThanAnEngineTakes) {
   Scene scene;
   scene.fields.resize(max_fields + 1);

@@ -25,16 +25,23 @@ std::pair<double, double> project(const Camera& camera, double aspect, const Poi
   return {dot(v, axes.x) / half_height / aspect, dot(v, axes.y) / half_height};
 }
 
-double extent_in_image(const Camera& camera, double aspect, const Bounds3d& box) {
-  double extent = 0;
+/// Points at the corners of `box`, which fill it for the fitting.
+std::vector<VisibleSphere> corners_of(const Bounds3d& box) {
+  std::vector<VisibleSphere> corners;
   for (const double x : {box.min.x, box.max.x}) {
     for (const double y : {box.min.y, box.max.y}) {
-      for (const double z : {box.min.z, box.max.z}) {
-        const auto [u, v] = project(camera, aspect, {x, y, z});
-        if (std::isnan(u)) return NAN;
-        extent = std::max({extent, std::abs(u), std::abs(v)});
-      }
+      for (const double z : {box.min.z, box.max.z}) corners.push_back({{x, y, z}, 0});
     }
+  }
+  return corners;
+}
+
+double extent_in_image(const Camera& camera, double aspect, const Bounds3d& box) {
+  double extent = 0;
+  for (const VisibleSphere& corner : corners_of(box)) {
+    const auto [u, v] = project(camera, aspect, corner.center);
+    if (std::isnan(u)) return NAN;
+    extent = std::max({extent, std::abs(u), std::abs(v)});
   }
   return extent;
 }
@@ -47,42 +54,42 @@ RC_GTEST_PROP(FitCamera, ShowsTheWholeBoxAndFillsTheImage, ()) {
   Scene scene;
   if (*rc::gen::arbitrary<bool>()) scene.fov_degrees = number(16, 2400);
   if (*rc::gen::arbitrary<bool>()) scene.up = Vector3d{number(-99, 99), number(1, 99), 0};
-  const double extent = extent_in_image(fit_camera(scene, box, aspect), aspect, box);
+  const double extent = extent_in_image(fit_camera(scene, corners_of(box), aspect), aspect, box);
   RC_ASSERT(extent > 0.9);
   RC_ASSERT(extent < 0.98);
 }
 
 TEST(FitCamera, LooksAtTheLargestFace) {
   const auto forward = [](double x, double y, double z) {
-    return camera_axes(fit_camera({}, {{0, 0, 0}, {x, y, z}}, 1)).forward;
+    return camera_axes(fit_camera({}, corners_of({{0, 0, 0}, {x, y, z}}), 1)).forward;
   };
   EXPECT_LT(forward(10, 10, 10).z, -0.8);
   EXPECT_LT(forward(10, 10, 2).z, -0.8);
   EXPECT_LT(forward(2, 10, 10).x, -0.8);
   EXPECT_GT(forward(10, 2, 10).y, 0.8);
   EXPECT_EQ(forward(10, 10, 0), (Vector3d{0, 0, -1}));
-  EXPECT_EQ(fit_camera({}, {{0, 0, 0}, {10, 2, 10}}, 1).up, (Vector3d{0, 0, 1}));
+  EXPECT_EQ(fit_camera({}, corners_of({{0, 0, 0}, {10, 2, 10}}), 1).up, (Vector3d{0, 0, 1}));
 }
 
 TEST(FitCamera, KeepsWhatTheSceneSays) {
   const Bounds3d box{{0, 0, 0}, {2, 2, 2}};
   Scene scene;
   scene.eye = {1, 9, 1};
-  Camera camera = fit_camera(scene, box, 1);
+  Camera camera = fit_camera(scene, corners_of(box), 1);
   EXPECT_EQ(camera.eye, (Point3d{1, 9, 1}));
   EXPECT_EQ(camera.target, (Point3d{1, 1, 1}));
   EXPECT_EQ(camera.up, (Vector3d{0, 0, 1})) << "y would be parallel to the view";
   scene.eye = {1, 1, 1};
-  EXPECT_NO_THROW(fit_camera(scene, box, 1));
+  EXPECT_NO_THROW(fit_camera(scene, corners_of(box), 1));
   scene.target = {1, 1, 1};
-  EXPECT_THROW(fit_camera(scene, box, 1), Error);
+  EXPECT_THROW(fit_camera(scene, corners_of(box), 1), Error);
   scene.eye.reset();
   scene.target = {0, 0, 0};
-  camera = fit_camera(scene, box, 1);
+  camera = fit_camera(scene, corners_of(box), 1);
   EXPECT_EQ(camera.target, (Point3d{0, 0, 0}));
   EXPECT_LT(extent_in_image(camera, 1, box), 0.98);
   scene.orthographic_height = 5;
-  EXPECT_FALSE(std::isnan(extent_in_image(fit_camera(scene, box, 1), 1, box)));
+  EXPECT_FALSE(std::isnan(extent_in_image(fit_camera(scene, corners_of(box), 1), 1, box)));
 }
 
 TEST(DefaultStepSize, IsHalfASmallRadiusWithinBounds) {
@@ -96,12 +103,95 @@ TEST(DefaultStepSize, IsHalfASmallRadiusWithinBounds) {
   EXPECT_NEAR(default_step_size(fields, {{0, 0, 0}, {2e5, 0, 0}}), 2e5 / 2048, 1e-9);
 }
 
-TEST(VisibleBox, HasATypicalSupportAroundTheCentres) {
+TEST(DefaultStepSize, FollowsTheRadiiThatCoverMostOfThePicture) {
   std::vector<FieldSource> fields(1);
-  fields[0].index.assign(9, 0);
-  fields[0].radius.assign(9, 3);
-  fields[0].radius[8] = 1000;
-  EXPECT_EQ(visible_box(fields, {{0, 0, 0}, {1, 2, 3}}), (Bounds3d{{-6, -6, -6}, {7, 8, 9}}));
+  fields[0].index.assign(100, 0);
+  fields[0].radius.assign(100, 1);  // half of the particles cover a hundredth of the picture
+  for (std::size_t i = 0; i < 50; ++i) fields[0].radius[i] = 0.1f;
+  EXPECT_EQ(default_step_size(fields, {{0, 0, 0}, {1, 1, 1}}), 0.5);
+}
+
+/// What spheres come to in the image: -1 to 1 from edge to edge.
+struct Extent {
+  double left = 1, right = -1, bottom = 1, top = -1;
+};
+
+Extent extent_of(const std::vector<VisibleSphere>& spheres, const Camera& camera, double aspect) {
+  Extent extent;
+  for (const VisibleSphere& sphere : spheres) {
+    const auto [u, v] = project(camera, aspect, sphere.center);
+    extent.left = std::min(extent.left, u);
+    extent.right = std::max(extent.right, u);
+    extent.bottom = std::min(extent.bottom, v);
+    extent.top = std::max(extent.top, v);
+  }
+  return extent;
+}
+
+/// Points on a ball's surface.
+std::vector<VisibleSphere> ball(std::size_t count) {
+  std::vector<VisibleSphere> points;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double z = 2 * (static_cast<double>(i) + 0.5) / static_cast<double>(count) - 1;
+    const double around = 2.399963 * static_cast<double>(i), r = std::sqrt(1 - z * z);
+    points.push_back({{r * std::cos(around), r * std::sin(around), z}, 0});
+  }
+  return points;
+}
+
+TEST(FitCamera, FillsTheImageWithABallWhoseBoxWouldNeedMoreRoom) {
+  const auto points = ball(5000);
+  const Extent extent = extent_of(points, fit_camera({}, points, 1), 1);
+  for (const double edge : {-extent.left, extent.right, -extent.bottom, extent.top}) {
+    EXPECT_NEAR(edge, 0.96, 0.01);
+  }
+}
+
+TEST(FitCamera, HoldsWholeSpheres) {
+  // A sphere of radius 1 at distance d fills the image where sin(fov / 2) = 1 / d.
+  Scene scene;
+  scene.fov_degrees = 60;
+  const std::vector<VisibleSphere> one{{{5, 6, 7}, 1}};
+  const Camera camera = fit_camera(scene, one, 1);
+  const double tangent = 0.96 * std::tan(M_PI / 6);
+  EXPECT_NEAR(length(camera.eye - one[0].center), std::sqrt(1 + tangent * tangent) / tangent, 1e-9);
+}
+
+TEST(FitCamera, IsNotMovedByFarStraysButShowsSmallNumbersOfParticles) {
+  const auto points = ball(5000);
+  const Camera camera = fit_camera({}, points, 1);
+  auto with_strays = points;
+  with_strays.push_back({{100, 0, 0}, 0});
+  with_strays.push_back({{0, -1e6, 0}, 0});
+  EXPECT_LT(length(fit_camera({}, with_strays, 1).eye - camera.eye), 0.02);
+
+  auto cloud = points;  // too many for strays
+  for (int i = 0; i < 50; ++i) cloud.push_back({{100, 0.1 * i, 0}, 0});
+  EXPECT_LT(extent_of(cloud, fit_camera({}, cloud, 1), 1).right, 0.97);
+
+  auto near = points;  // not far enough
+  near.push_back({{1.8, 0, 0}, 0});
+  EXPECT_LT(extent_of(near, fit_camera({}, near, 1), 1).right, 0.97);
+
+  auto few = ball(10);
+  few.push_back({{100, 0, 0}, 0});
+  EXPECT_LT(extent_of(few, fit_camera({}, few, 1), 1).right, 0.97);
+}
+
+TEST(VisibleSpheres, AreAsLargeAsGaussiansAreSeenAndNotOutsized) {
+  ParticleSet particles;
+  particles.origin = {10, 20, 30};
+  for (auto* axis : {&particles.x, &particles.y, &particles.z}) axis->assign(9, 1);
+  std::vector<FieldSource> fields(1);
+  fields[0].index = {0, 2, 4};
+  fields[0].radius = {3, 3, 1000};
+  const auto spheres = visible_spheres(particles, fields);
+  ASSERT_EQ(spheres.size(), 3u);
+  EXPECT_EQ(spheres[0].center, (Point3d{11, 21, 31}));
+  EXPECT_EQ(spheres[0].radius, 1.75 * 3);
+  EXPECT_EQ(spheres[2].radius, 2.5 * 1.75 * 3);
+  fields[0].kernel.support_factor = 1;
+  EXPECT_EQ(visible_spheres(particles, fields)[0].radius, 3) << "nothing is beyond the support";
 }
 
 /// Rays through `make_value(ray, sample)`.
@@ -157,7 +247,7 @@ TEST(FitTransferFunction, IsNeitherFogNorBlockWhateverTheUnits) {
       const RayProfiles profiles =
           profiles_of(300, 200, 0.1 * length_unit,
                       [unit](std::size_t r, std::size_t k) { return unit * wavy(r, k); });
-      const TransferFunction f = fit_transfer_function({}, {}, profiles, 1);
+      const TransferFunction f = fit_transfer_function({}, {}, profiles, 0.7);
       EXPECT_FALSE(f.log_scale);
       EXPECT_EQ(f.points.front().extinction, 0);
       EXPECT_NEAR(mean_opacity(f, profiles), 0.7, 0.01) << unit << " " << length_unit;
@@ -165,20 +255,27 @@ TEST(FitTransferFunction, IsNeitherFogNorBlockWhateverTheUnits) {
   }
 }
 
-TEST(FitTransferFunction, SeveralFieldsShareTheOpacity) {
-  const RayProfiles profiles = profiles_of(300, 200, 0.1, wavy);
-  const double one = mean_opacity(fit_transfer_function({}, {}, profiles, 4), profiles);
-  EXPECT_NEAR(1 - std::pow(1 - one, 4), 0.7, 0.02);
+TEST(FitOpacity, SharesRaysAmongTheFieldsThatTheyMeet) {
+  const RayProfiles wave = profiles_of(300, 200, 0.1, wavy);
+  EXPECT_EQ(fit_opacity({wave}), 0.7);
+  EXPECT_NEAR(1 - std::pow(1 - fit_opacity({wave, wave, wave, wave}), 4), 0.7, 1e-6);
+  // Fields on rays of their own take nothing from each other.
+  const auto only = [](std::size_t parity) {
+    return profiles_of(300, 200, 0.1, [parity](std::size_t r, std::size_t) {
+      return r % 2 == parity ? 1.0 : 0.0;
+    });
+  };
+  EXPECT_NEAR(fit_opacity({only(0), only(1)}), 0.7, 1e-6);
 }
 
 TEST(FitTransferFunction, IsLogarithmicWhereValuesSpanDecades) {
   const RayProfiles profiles = profiles_of(
       300, 200, 1, [](std::size_t r, std::size_t k) { return std::pow(10.0, 6 * wavy(r, k) - 3); });
-  TransferFunction f = fit_transfer_function({}, {}, profiles, 1);
+  TransferFunction f = fit_transfer_function({}, {}, profiles, 0.7);
   EXPECT_TRUE(f.log_scale);
   EXPECT_GT(f.points.front().value, 0);
   EXPECT_NEAR(mean_opacity(f, profiles), 0.7, 0.01);
-  f = fit_transfer_function(NamedTransferFunction{"heat", {}, {}, false}, {}, profiles, 1);
+  f = fit_transfer_function(NamedTransferFunction{"heat", {}, {}, false}, {}, profiles, 0.7);
   EXPECT_FALSE(f.log_scale);
 }
 
@@ -186,7 +283,7 @@ TEST(FitTransferFunction, ValuesOfBothSignsAreSymmetricAboutZero) {
   const RayProfiles profiles = profiles_of(300, 200, 0.1, [](std::size_t r, std::size_t k) {
     return std::sin(0.1 * static_cast<double>(r + k));
   });
-  const TransferFunction f = fit_transfer_function({}, {}, profiles, 1);
+  const TransferFunction f = fit_transfer_function({}, {}, profiles, 0.7);
   EXPECT_EQ(f.points.front().value, -f.points.back().value);
   EXPECT_EQ(f.points.front().extinction, f.points.back().extinction);
   EXPECT_EQ(f.points[16].extinction, 0);
@@ -196,26 +293,29 @@ TEST(FitTransferFunction, ValuesOfBothSignsAreSymmetricAboutZero) {
 TEST(FitTransferFunction, KeepsWhatTheSceneSays) {
   const RayProfiles profiles = profiles_of(300, 200, 0.1, wavy);
   const TransferFunction points{{{1, {1, 0, 0}, 3}}, false};
-  EXPECT_EQ(fit_transfer_function(points, {}, profiles, 1), points);
+  EXPECT_EQ(fit_transfer_function(points, {}, profiles, 0.7), points);
   const NamedTransferFunction named{"heat", {{0.5, 1.5}}, 7, {}};
-  EXPECT_EQ(fit_transfer_function(named, {}, profiles, 1),
+  EXPECT_EQ(fit_transfer_function(named, {}, profiles, 0.7),
             named_transfer_function("heat", 0.5, 1.5, 7));
 }
 
-TEST(FitTransferFunction, SpeciesColoursAreOneColour) {
+TEST(FitTransferFunction, SpeciesColoursAreOneColourAndPalerAtTheEnd) {
   const Color red{1, 0, 0};
   const TransferFunction f = fit_transfer_function(NamedTransferFunction{"species", {}, {}, {}},
-                                                   red, profiles_of(300, 200, 0.1, wavy), 1);
-  for (const auto& point : f.points) EXPECT_EQ(point.color, red);
+                                                   red, profiles_of(300, 200, 0.1, wavy), 0.7);
+  EXPECT_EQ(f.points.front().color, red);
+  EXPECT_EQ(f.points.back().color.r, 1);
+  EXPECT_EQ(f.points.back().color.g, f.points.back().color.b);
+  EXPECT_GT(f.points.back().color.g, 0.2);
   EXPECT_EQ(f.points.front().extinction, 0);
 }
 
 TEST(FitTransferFunction, AnswersViewsOfNothingAndOfOneValue) {
   const auto nothing = [](std::size_t, std::size_t) { return 0; };
-  EXPECT_NO_THROW(fit_transfer_function({}, {}, RayProfiles{{}, {0}, {}}, 1));
-  EXPECT_NO_THROW(fit_transfer_function({}, {}, profiles_of(9, 9, 1, nothing), 1));
+  EXPECT_NO_THROW(fit_transfer_function({}, {}, RayProfiles{{}, {0}, {}}, 0.7));
+  EXPECT_NO_THROW(fit_transfer_function({}, {}, profiles_of(9, 9, 1, nothing), 0.7));
   const RayProfiles slab = profiles_of(9, 9, 1, [](std::size_t, std::size_t) { return 3; });
-  EXPECT_NEAR(mean_opacity(fit_transfer_function({}, {}, slab, 1), slab), 0.7, 0.01);
+  EXPECT_NEAR(mean_opacity(fit_transfer_function({}, {}, slab, 0.7), slab), 0.7, 0.01);
 }
 
 }  // namespace
