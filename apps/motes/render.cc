@@ -27,7 +27,7 @@ values in view. Options override what a scene says.
 
 Examples:
   motes render silica.lammpstrj -o silica.png
-  motes render silica.lammpstrj -o silica.png --types 1=Si,2=O --radius 1.2
+  motes render silica.lammpstrj -o soft.png --types 1=Si,2=O --radius 1.2
   motes render box.hdf5 -o box.png --transfer-function magma --no-lighting --size 1920x1080
   motes render run.xyz.gz -o frame7.png --frame 7 --eye 0,0,-80 --target 0,0,0 --fov 30
   motes render scene.json -o picture.exr --stats stats.json --repeat 5)";

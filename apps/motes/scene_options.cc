@@ -290,11 +290,13 @@ void add_picture_options(CLI::App& command, SceneChanges& changes) {
   add_option(command, changes, "--size", "WxH",
              "size of the picture in pixels (default: 1024x1024)", read_size);
   add_camera_options(command, changes);
-  add_option(command, changes, "--transfer-function", "NAME|FILE.json",
-             fmt::format("colours and opacity: {}, species,\nor a file with points; names are "
-                         "fitted to the values in view\n(default: species where they are elements, else viridis)",
-                         fmt::join(color_map_names(), ", ")),
-             read_transfer_function_option);
+  add_option(
+      command, changes, "--transfer-function", "NAME|FILE.json",
+      fmt::format(
+          "colours and opacity: {}, species,\nor a file with points; names are "
+          "fitted to the values in view\n(default: species where they are elements, else viridis)",
+          fmt::join(color_map_names(), ", ")),
+      read_transfer_function_option);
   add_lighting_options(command, changes);
   add_option(command, changes, "--background", "COLOUR",
              "black, white, rrggbb or linear r,g,b (default: black)", read_background);
