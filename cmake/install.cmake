@@ -18,17 +18,23 @@ install(EXPORT motes NAMESPACE motes:: DESTINATION ${package_dir} FILE motesTarg
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/src/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/motes
   FILES_MATCHING PATTERN "*.h")
 
-# The package looks for its dependencies with the build's own list.
+# The package looks for its dependencies with the build's own list. Its files are made where
+# find_package() does not look: it searches the directories of PATH, the program's among them.
+set(generated_dir ${PROJECT_BINARY_DIR}/generated/package)
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/motesConfig.cmake.in
-  ${PROJECT_BINARY_DIR}/motesConfig.cmake INSTALL_DESTINATION ${package_dir})
-write_basic_package_version_file(${PROJECT_BINARY_DIR}/motesConfigVersion.cmake
+  ${generated_dir}/motesConfig.cmake INSTALL_DESTINATION ${package_dir})
+write_basic_package_version_file(${generated_dir}/motesConfigVersion.cmake
   COMPATIBILITY SameMinorVersion)
 install(FILES
-  ${PROJECT_BINARY_DIR}/motesConfig.cmake
-  ${PROJECT_BINARY_DIR}/motesConfigVersion.cmake
+  ${generated_dir}/motesConfig.cmake
+  ${generated_dir}/motesConfigVersion.cmake
   ${PROJECT_SOURCE_DIR}/cmake/dependencies.cmake
   DESTINATION ${package_dir})
 
+# All that cmake --install copies, without tests and benchmarks.
+add_custom_target(installable)
+add_dependencies(installable ${rooms})
 if(TARGET motes)
   install(TARGETS motes RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  add_dependencies(installable motes)
 endif()
