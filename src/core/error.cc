@@ -31,28 +31,64 @@ std::string printable(std::string_view text, std::size_t max_length) {
 
 namespace {
 
+char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+
+bool is_letter_or_digit(char c) {
+  return (lower(c) >= 'a' && lower(c) <= 'z') || (c >= '0' && c <= '9');
+}
+
+std::string in_lower_case(std::string_view text) {
+  std::string out(text);
+  std::transform(out.begin(), out.end(), out.begin(), lower);
+  return out;
+}
+
+/// Insertions, deletions, substitutions and swaps of neighbours that make `b` of `a` (optimal
+/// string alignment).
 std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
+  std::vector<std::size_t> before(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = row[0]++;
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t substitution = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({substitution, row[j] + 1, row[j + 1] + 1});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    before.swap(last);
+    last.swap(row);
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      row[j] =
+          std::min({last[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1), last[j] + 1, row[j - 1] + 1});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
+        row[j] = std::min(row[j], before[j - 2] + 1);
+      }
     }
   }
   return row.back();
 }
 
+/// Whether `part` is in `whole`; a part of one or two letters has to stand by itself, as the q of
+/// v_q does.
+bool is_part(std::string_view part, std::string_view whole) {
+  if (part.empty()) return false;
+  for (auto at = whole.find(part); at != whole.npos; at = whole.find(part, at + 1)) {
+    const auto end = at + part.size();
+    const bool alone = (at == 0 || !is_letter_or_digit(whole[at - 1])) &&
+                       (end == whole.size() || !is_letter_or_digit(whole[end]));
+    if (part.size() > 2 || alone) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 std::string nearest_word(std::string_view word, const std::vector<std::string>& candidates) {
+  const std::string wanted = in_lower_case(word);
+  // A single letter that is changed leaves nothing of the word.
+  const std::size_t far = wanted.size() < 2 ? 0 : std::max<std::size_t>(1, wanted.size() / 3);
   std::string best;
-  // A word that shares less than half of its letters is no help.
-  std::size_t best_distance = std::max<std::size_t>(2, word.size() / 2) + 1;
+  std::size_t best_distance = std::string::npos;
   for (const std::string& candidate : candidates) {
-    const std::size_t distance = edit_distance(word, candidate);
+    const std::string known = in_lower_case(candidate);
+    const std::size_t distance = edit_distance(wanted, known);
+    const bool near = distance <= far && distance < known.size();
+    if (!near && !is_part(wanted, known) && !is_part(known, wanted)) continue;
     if (distance < best_distance) {
       best_distance = distance;
       best = candidate;

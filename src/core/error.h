@@ -24,7 +24,8 @@ class Error : public std::runtime_error {
 /// `text` made fit for a message of one line: control characters as \xHH, cut at `max_length`.
 std::string printable(std::string_view text, std::size_t max_length = 60);
 
-/// The member of `candidates` nearest to `word` (edit distance), or "" if none is near.
+/// The member of `candidates` that `word` was likely meant to be: a typing mistake away, or one a
+/// part of the other, whatever the case; "" if none is.
 std::string nearest_word(std::string_view word, const std::vector<std::string>& candidates);
 
 /// "unknown KIND 'NAME'; did you mean 'NEAREST'?", or, where none is near, what there is.

@@ -22,6 +22,19 @@ void keep_if(std::vector<std::uint32_t>& index, Predicate&& holds) {
       index.end());
 }
 
+bool is_number(const std::string& name) {
+  return !name.empty() && name.find_first_not_of("0123456789") == std::string::npos;
+}
+
+Error unknown_species(const std::string& name, const std::vector<std::string>& known) {
+  const Error error = unknown_name("species", name, known);
+  if (is_number(name) || known.empty() || !std::all_of(known.begin(), known.end(), is_number)) {
+    return error;
+  }
+  return Error(fmt::format("{}; numeric types get names by \"types\" in \"data\" or --types {}={}",
+                           error.what(), known.front(), printable(name)));
+}
+
 void keep_species(const ParticleSet& particles, const std::vector<std::string>& names,
                   std::vector<std::uint32_t>& index) {
   if (particles.species.empty()) {
@@ -32,7 +45,7 @@ void keep_species(const ParticleSet& particles, const std::vector<std::string>& 
   for (const std::string& name : names) {
     const auto& known = particles.species_names;
     const auto it = std::find(known.begin(), known.end(), name);
-    if (it == known.end()) throw unknown_name("species", name, known);
+    if (it == known.end()) throw unknown_species(name, known);
     wanted[static_cast<std::size_t>(it - known.begin())] = true;
   }
   keep_if(index, [&](std::uint32_t i) { return wanted[particles.species[i]]; });

@@ -25,6 +25,25 @@ TEST(NearestWord, FindsTypingMistakes) {
   EXPECT_EQ(nearest_word("raduis", words), "radius");
   EXPECT_EQ(nearest_word("wieght", words), "weight");
   EXPECT_EQ(nearest_word("zzzzzzzz", words), "");
+  EXPECT_EQ(nearest_word("nmae", {"range", "name"}), "name");
+}
+
+TEST(NearestWord, FindsPartsInAnyCase) {
+  const std::vector<std::string> words{"vx", "v_q", "magma", "SmoothingLength"};
+  EXPECT_EQ(nearest_word("q", words), "v_q");
+  EXPECT_EQ(nearest_word("mag", words), "magma");
+  EXPECT_EQ(nearest_word("MAGMA", words), "magma");
+  EXPECT_EQ(nearest_word("smoothing", words), "SmoothingLength");
+  EXPECT_EQ(nearest_word("magma_r", words), "magma");
+  EXPECT_EQ(nearest_word("magma", {"magma2", "magma"}), "magma");
+}
+
+TEST(NearestWord, SuggestsNothingThatIsOnlyAsShort) {
+  EXPECT_EQ(nearest_word("q", {"vx", "x"}), "");
+  EXPECT_EQ(nearest_word("type", {"c_pe"}), "");
+  EXPECT_EQ(nearest_word("jet", {"heat"}), "");
+  EXPECT_EQ(nearest_word("Si", {"1", "S", "Ca"}), "");
+  EXPECT_EQ(nearest_word("", {"x"}), "");
 }
 
 TEST(UnknownName, NamesTheNearestOrAll) {

@@ -51,6 +51,13 @@ TEST(SelectParticles, NamesWhatThereIs) {
                 select_particles(silica(), {{"Sj"}, {}, ""});
               }),
               HasSubstr("unknown species 'Sj'; did you mean 'Si'?"));
+  ParticleSet numbered = silica();
+  numbered.species_names = {"1", "2"};
+  EXPECT_EQ(message_of([&] {
+              select_particles(numbered, {{"Si"}, {}, ""});
+            }),
+            "unknown species 'Si'; there are: 1, 2; numeric types get names by \"types\" in "
+            "\"data\" or --types 1=Si");
   ParticleSet bare = silica();
   bare.species.clear();
   EXPECT_THAT(message_of([&] {
