@@ -81,6 +81,20 @@ Framebuffer render_frames(const Renderer& renderer, const ResolvedScene& scene,
   return image;
 }
 
+/// A picture without any opacity is seldom what was meant.
+void warn_of_empty_picture(const Framebuffer& image, const Bounds3d& data,
+                           const std::string& length_unit, Console& console) {
+  const std::vector<float>& rgba = image.rgba;
+  for (std::size_t i = 3; i < rgba.size(); i += 4) {
+    if (rgba[i] > 0) return;
+  }
+  console.warnings().add(fmt::format(
+      "nothing is in view; the data span x {:.4g} to {:.4g}, y {:.4g} to {:.4g}, z {:.4g} to "
+      "{:.4g}{}",
+      data.min.x, data.max.x, data.min.y, data.max.y, data.min.z, data.max.z,
+      length_unit == "unknown" ? "" : " " + length_unit));
+}
+
 void replace_missing_engine(Scene& scene, Console& console) {
   if (scene.render.engine != Engine::sweep) return;
   scene.render.engine = Engine::coherent;
@@ -106,10 +120,14 @@ void run(const Options& options) {
   Statistics statistics;
   std::optional<Renderer> renderer;
   ResolvedScene resolved;
+  Bounds3d bounds;
+  std::string length_unit;
   {
     // The particles as they were read are gone before the first frame: only kernels stay.
     const Input input = read_particles(scene, console);
     statistics.read_ms = input.read_ms;
+    bounds = input.particles.bounds();
+    length_unit = input.particles.length_unit;
     color_by_species(scene, input.particles);
     const auto fields = expand_fields(scene, input.particles);
     const auto sources = make_field_sources(fields, scene.kernel, input.particles, console);
@@ -122,6 +140,7 @@ void run(const Options& options) {
   statistics.tree_bytes = renderer->kernels().bvh.bytes();
 
   const Framebuffer image = render_frames(*renderer, resolved, options, console, statistics);
+  warn_of_empty_picture(image, bounds, length_unit, console);
   write_image(output, format, image, scene.render.termination_opacity, scene.render.background);
   output.commit();
   if (stats) {

@@ -275,7 +275,11 @@ TEST_F(CommandLine, ATransferFunctionMayBeAFile) {
 }
 
 TEST_F(CommandLine, ACameraThatLooksAtNothingGivesAnEmptyPicture) {
-  succeed("render a.xyz -o a.npy --size 16x16 --eye 0,0,50 --target 0,0,99");
+  const Outcome outcome = run("render a.xyz -o a.npy --size 16x16 --eye 0,0,50 --target 0,0,99");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_EQ(outcome.err,
+            "motes: warning: nothing is in view; the data span x 0 to 4, y 0 to 0, z 0 to 0 "
+            "angstrom\n");
   for (const float v : pixels("a.npy")) EXPECT_EQ(v, 0);
 }
 
