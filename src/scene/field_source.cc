@@ -152,12 +152,12 @@ FieldSource make_field_source(const ParticleSet& particles, const Field& field,
                             particles.size()));
   }
 
-  // Particles with a size and a mass of their own stand for a density of mass.
-  const bool density = !field.radius && !field.weight && particles.find_property("radius") &&
-                       particles.find_property("mass");
+  // Particles with sizes of their own stand for a density: of mass, or else of number.
+  const bool density = !field.radius && !field.weight && particles.find_property("radius");
+  const bool of_mass = density && particles.find_property("mass");
   const std::vector<float> radius = field.radius ? values_of(particles, *field.radius, "radius")
                                                  : default_radii(particles, warnings).radius;
-  const NumberOrProperty unit = density ? NumberOrProperty("mass") : NumberOrProperty(1.0);
+  const NumberOrProperty unit = of_mass ? NumberOrProperty("mass") : NumberOrProperty(1.0);
   const std::vector<float> weight = values_of(particles, field.weight.value_or(unit), "weight");
   source.normalise = field.normalise.value_or(density);
 

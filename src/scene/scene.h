@@ -158,9 +158,9 @@ std::vector<Field> expand_fields(const Scene& scene, const ParticleSet& particle
 
 /// The particles, radii and weights of a field. `kernel` is the scene's. Defaults: radius is the
 /// property "radius" where the reader gave one, else the species' covalent radii, else half the
-/// mean distance of neighbours; weight 1, but "mass" with `normalise` where the particles have it
-/// and the property "radius" is used. Throws Error for unknown properties and where no particle is
-/// left.
+/// mean distance of neighbours; weight 1. Where the field gives neither and the property "radius" is
+/// there, `normalise` is on and the weight is "mass" if there is one: a density of mass or number.
+/// Throws Error for unknown properties and where no particle is left.
 FieldSource make_field_source(const ParticleSet& particles, const Field& field,
                               const Kernel& kernel, Warnings& warnings);
 

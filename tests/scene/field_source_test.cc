@@ -92,7 +92,7 @@ TEST(MakeFieldSource, TakesNumbersAndProperties) {
   EXPECT_EQ(source.kernel, (Kernel{3, 7}));
 }
 
-TEST(MakeFieldSource, TakesMassAsDensityWhereParticlesHaveASize) {
+TEST(MakeFieldSource, TakesADensityWhereParticlesHaveASize) {
   ParticleSet particles = silica();
   particles.properties = {{"h", {2, 2, 2, 2}}, {"radius", {1, 1, 1, 2}}, {"mass", {3, 4, 5, 6}}};
   Warnings warnings;
@@ -100,6 +100,10 @@ TEST(MakeFieldSource, TakesMassAsDensityWhereParticlesHaveASize) {
   EXPECT_THAT(source.radius, ElementsAre(1, 1, 1, 2));
   EXPECT_THAT(source.weight, ElementsAre(3, 4, 5, 6));
   EXPECT_TRUE(source.normalise);
+  particles.properties.pop_back();
+  source = make_field_source(particles, {}, {}, warnings);
+  EXPECT_THAT(source.weight, ElementsAre(1));
+  EXPECT_TRUE(source.normalise) << "without masses, a density of number";
   Field field;
   field.weight = 1.0;
   source = make_field_source(particles, field, {}, warnings);
