@@ -12,6 +12,7 @@
 #include "motes/commands.h"
 #include "motes/input.h"
 #include "motes/scene_options.h"
+#include "particles/radii.h"
 
 namespace motes {
 namespace {
@@ -30,6 +31,7 @@ struct Options {
 struct FileInfo {
   std::string format;
   std::size_t num_frames = 0;
+  std::uint64_t frame = 0;  // of these particles
   ParticleSet particles;
 };
 
@@ -79,7 +81,18 @@ void print_row(std::string_view name, std::string_view value) {
   fmt::print("{:<13} {}\n", name, printable(value, 1000));
 }
 
-void print_property(std::string_view title, const Property& property) {
+/// Columns that are filled by name and value; the names' width is that of the longest.
+void print_rows(std::string_view title,
+                const std::vector<std::pair<std::string, std::string>>& rows) {
+  std::size_t width = 16;
+  for (const auto& row : rows) width = std::max(width, row.first.size());
+  for (const auto& [name, value] : rows) {
+    print_row(title, fmt::format("{:<{}} {}", name, width, value));
+    title = "";
+  }
+}
+
+std::string range_of(const Property& property) {
   float low = std::numeric_limits<float>::infinity(), high = -low;
   std::size_t not_finite = 0;
   for (const float v : property.values) {
@@ -92,7 +105,7 @@ void print_property(std::string_view title, const Property& property) {
   }
   std::string range = low <= high ? fmt::format("{:g} to {:g}", low, high) : "no values";
   if (not_finite > 0) range += fmt::format(", {} not finite", not_finite);
-  print_row(title, fmt::format("{:<16} {}", printable(property.name), range));
+  return range;
 }
 
 void print_table(const std::string& path, const FileInfo& info) {
@@ -100,14 +113,21 @@ void print_table(const std::string& path, const FileInfo& info) {
   print_row("file", path);
   print_row("format", info.format);
   print_row("frames", fmt::format("{}", info.num_frames));
+  if (info.num_frames > 1) print_row("frame", fmt::format("{}", info.frame));
   print_row("particles", fmt::format("{}", particles.size()));
   const auto counts = count_species(particles);
+  std::vector<std::pair<std::string, std::string>> species, properties;
   for (std::size_t s = 0; s < counts.size(); ++s) {
-    print_row(s == 0 ? "species" : "",
-              fmt::format("{:<16} {}", printable(particles.species_names[s]), counts[s]));
+    species.emplace_back(printable(particles.species_names[s]), fmt::format("{}", counts[s]));
   }
-  for (std::size_t k = 0; k < particles.properties.size(); ++k) {
-    print_property(k == 0 ? "properties" : "", particles.properties[k]);
+  for (const Property& property : particles.properties) {
+    properties.emplace_back(printable(property.name), range_of(property));
+  }
+  print_rows("species", species);
+  print_rows("properties", properties);
+  if (particles.size() > 0) {
+    Warnings warnings;  // that radii are guessed is said here and no trouble
+    print_row("radius", default_radii(particles, warnings).source);
   }
   if (!particles.bonds.empty()) print_row("bonds", fmt::format("{}", particles.bonds.size()));
   print_row("length unit", particles.length_unit);
@@ -136,6 +156,7 @@ void run(const Options& options) {
   const auto trajectory = open_trajectory(scene.data_path, read_options);
   FileInfo info;
   info.format = trajectory->format();
+  info.frame = scene.frame;
   info.particles = trajectory->read_frame(scene.frame);
   info.num_frames = trajectory->num_frames();
   console.print_warnings();

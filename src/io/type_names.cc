@@ -53,10 +53,30 @@ std::vector<std::size_t> sorted_types(const std::vector<std::string>& types) {
   return order;
 }
 
+/// The user may have named a type that is not there, by a slip.
+void warn_of_absent_types(const std::filesystem::path& file, const std::vector<std::string>& types,
+                          const ReadOptions& options) {
+  if (options.warnings == nullptr) return;
+  std::string present;
+  for (const std::size_t i : sorted_types(types)) {
+    present += (present.empty() ? "" : ", ") + printable(types[i]);
+  }
+  for (const auto& [number, name] : options.types) {
+    const bool found = std::any_of(types.begin(), types.end(), [n = number](const auto& type) {
+      return to_integer(type) == n;
+    });
+    if (found) continue;
+    options.warnings->add(Error(file, fmt::format("has no type {} to be named {}; there are: {}",
+                                                  number, printable(name), printable(present, 200)))
+                              .what());
+  }
+}
+
 }  // namespace
 
 void name_types(const std::filesystem::path& file, const Column& types, const TypeHints& hints,
                 const ReadOptions& options, ParticleSet& particles) {
+  warn_of_absent_types(file, types.words, options);
   std::vector<std::uint16_t> species(types.words.size());
   std::string guesses;
   for (const std::size_t i : sorted_types(types.words)) {
