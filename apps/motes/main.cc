@@ -2,10 +2,13 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <new>
 #include <string>
+#include <vector>
 
 #include "core/error.h"
 #include "motes/commands.h"
@@ -26,23 +29,70 @@ int report(const std::string& message, int status) {
   return status;
 }
 
-/// The subcommand that the command line names, for the hint at its help.
-std::string named_command(const CLI::App& program) {
+/// The subcommand that the command line names, or the program itself.
+const CLI::App& named_command(const CLI::App& program) {
   const auto commands = program.get_subcommands();
-  return commands.empty() ? "" : commands.front()->get_name() + " ";
+  return commands.empty() ? program : *commands.front();
 }
 
-int report_parse_error(const CLI::App& program, const CLI::ParseError& error) {
+/// The first argument that nobody takes, in the order of the command line, or "".
+std::string first_unknown(const CLI::App& program, int argc, char** argv) {
+  const std::vector<std::string> unknown = program.remaining(true);
+  const auto it = std::find_if(argv + 1, argv + argc, [&](const char* argument) {
+    return std::find(unknown.begin(), unknown.end(), argument) != unknown.end();
+  });
+  return it == argv + argc ? "" : *it;
+}
+
+std::string describe_unknown_option(const CLI::App& command, const std::string& argument) {
+  const std::string option = argument.substr(0, argument.find('='));
+  std::vector<std::string> known;
+  for (const CLI::Option* each : command.get_options()) {
+    known.insert(known.end(), each->get_lnames().begin(), each->get_lnames().end());
+  }
+  const auto letters = std::min(option.find_first_not_of('-'), option.size());
+  const std::string nearest = motes::nearest_word(option.substr(letters), known);
+  const std::string start = fmt::format("{}: unknown option", motes::printable(option));
+  return nearest.empty() ? start : fmt::format("{}; did you mean --{}?", start, nearest);
+}
+
+std::string describe_unknown_command(const CLI::App& program, const std::string& argument) {
+  std::error_code error;
+  if (std::filesystem::exists(argument, error)) {
+    const std::string file = motes::printable(argument, 400);
+    return fmt::format(
+        "{}: expected a command first: 'motes render {} -o picture.png' or 'motes info {}'", file,
+        file, file);
+  }
+  std::vector<std::string> known;
+  for (const CLI::App* command : program.get_subcommands({})) known.push_back(command->get_name());
+  return motes::unknown_name("command", argument, known).what();
+}
+
+std::string describe(const CLI::App& program, const CLI::ParseError& error, int argc, char** argv) {
+  const CLI::App& command = named_command(program);
+  const std::string unknown = first_unknown(program, argc, argv);
+  if (unknown.starts_with('-')) return describe_unknown_option(command, unknown);
+  if (!unknown.empty() && &command == &program) return describe_unknown_command(program, unknown);
+  if (!unknown.empty()) {
+    return fmt::format("unexpected argument '{}'", motes::printable(unknown));
+  }
+  return motes::printable(error.what(), 400);
+}
+
+int report_parse_error(const CLI::App& program, const CLI::ParseError& error, int argc,
+                       char** argv) {
   if (error.get_exit_code() == 0) return program.exit(error);  // --help, --version
-  return report(fmt::format("{} (see motes {}--help)", motes::printable(error.what(), 400),
-                            named_command(program)),
+  const CLI::App& command = named_command(program);
+  const std::string name = &command == &program ? "" : command.get_name() + " ";
+  return report(fmt::format("{} (see motes {}--help)", describe(program, error, argc, argv), name),
                 2);
 }
 
 int run(int argc, char** argv) {
   CLI::App program(
       "Volume pictures and measurements of particle data, straight from the particles.", "motes");
-  program.set_version_flag("--version", "motes " MOTES_VERSION);
+  program.set_version_flag("-v,--version", "motes " MOTES_VERSION, "print the version and exit");
   program.set_help_flag("-h,--help", "print this help and exit");
   program.footer(examples);
   program.require_subcommand(1);
@@ -53,7 +103,7 @@ int run(int argc, char** argv) {
   try {
     program.parse(argc, argv);  // runs the subcommand
   } catch (const CLI::ParseError& error) {
-    return report_parse_error(program, error);
+    return report_parse_error(program, error, argc, argv);
   }
   // Whatever was printed has to have arrived.
   if (std::fflush(stdout) != 0) throw motes::Error("cannot write the standard output");

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <charconv>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -154,9 +155,22 @@ std::string check_suffix(const std::string& path) {
   try {
     image_format(path);
   } catch (const Error& error) {
-    return fmt::format("--output: {}", error.what());
+    return error.what();
   }
   return "";
+}
+
+/// A whole number from 1 to `max`.
+void add_count(CLI::App& command, const std::string& name, int& count, int max,
+               const std::string& description) {
+  const auto check = [max](const std::string& text) -> std::string {
+    int value = 0;
+    const char* const last = text.data() + text.size();
+    const auto [end, error] = std::from_chars(text.data(), last, value);
+    if (error == std::errc{} && end == last && value >= 1 && value <= max) return "";
+    return fmt::format("expected a whole number from 1 to {}, found '{}'", max, printable(text));
+  };
+  command.add_option(name, count, description)->type_name("N")->check(CLI::Validator(check, ""));
 }
 
 }  // namespace
@@ -172,15 +186,11 @@ void add_render_command(CLI::App& program) {
   add_picture_options(*command, options->changes);
   add_field_options(*command, options->changes);
   add_data_options(*command, options->changes);
-  command->add_option("--threads", options->threads, "threads to use (default: all cores)")
-      ->type_name("N")
-      ->check(CLI::Range(1, 4096).description(""));
+  add_count(*command, "--threads", options->threads, 4096, "threads to use (default: all cores)");
   command->add_option("--stats", options->stats, "write times and counts as JSON")
       ->type_name("STATS.json");
-  command
-      ->add_option("--repeat", options->repeat, "time N frames after one to warm up (default: 1)")
-      ->type_name("N")
-      ->check(CLI::Range(1, 1000000).description(""));
+  add_count(*command, "--repeat", options->repeat, 1000000,
+            "time N frames after one to warm up (default: 1)");
   command->footer(examples);
   command->callback([options] { run(*options); });
 }

@@ -161,23 +161,18 @@ SceneChanges::Change read_size(const std::string& text) {
 }
 
 SceneChanges::Change read_background(const std::string& text) {
-  Color color;
-  if (text == "white") {
-    color = {1, 1, 1};
-  } else if (text != "black") {
-    // A # begins a comment in the shell, so it may be left out.
-    const auto srgb = color_from_text(text.starts_with('#') ? text : "#" + text);
-    const auto linear = triple_in(text);
-    if (srgb) {
-      color = *srgb;
-    } else if (linear && std::min({(*linear)[0], (*linear)[1], (*linear)[2]}) >= 0) {
-      color = {static_cast<float>((*linear)[0]), static_cast<float>((*linear)[1]),
-               static_cast<float>((*linear)[2])};
-    } else {
-      bad_value("--background", "black, white, rrggbb (sRGB) or r,g,b (linear, from 0)", text);
-    }
+  auto color = color_from_text(text);
+  // A # begins a comment in the shell, so it may be left out.
+  if (!color) color = color_from_text("#" + text);
+  const auto linear = triple_in(text);
+  if (!color && linear && std::min({(*linear)[0], (*linear)[1], (*linear)[2]}) >= 0) {
+    color = {static_cast<float>((*linear)[0]), static_cast<float>((*linear)[1]),
+             static_cast<float>((*linear)[2])};
   }
-  return [color](Scene& scene) { scene.render.background = color; };
+  if (!color) {
+    bad_value("--background", "black, white, rrggbb (sRGB) or r,g,b (linear, from 0)", text);
+  }
+  return [color = *color](Scene& scene) { scene.render.background = color; };
 }
 
 SceneChanges::Change read_transfer_function_option(const std::string& text) {

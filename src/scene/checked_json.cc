@@ -129,7 +129,8 @@ Vector3d CheckedJson::vector() const {
 }
 
 Color CheckedJson::color() const {
-  constexpr const char* what = "a colour, \"#rrggbb\" (sRGB) or [r, g, b] (linear, 0 or more)";
+  constexpr const char* what =
+      "a colour, \"black\", \"white\", \"#rrggbb\" (sRGB) or [r, g, b] (linear, 0 or more)";
   if (value_.is_string()) {
     const auto srgb = color_from_text(value_.get_ref<const std::string&>());
     if (!srgb) expected(what);
@@ -177,6 +178,7 @@ std::string read_text(const std::filesystem::path& path) {
   std::error_code error;
   if (std::filesystem::is_directory(path, error))
     throw Error(path, "expected a file, found a directory");
+  if (!std::filesystem::exists(path, error) && !error) throw Error(path, "there is no such file");
   std::ifstream stream(path, std::ios::binary);
   if (!stream) throw Error(path, "cannot be opened");
   std::string text;

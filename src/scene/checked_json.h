@@ -46,7 +46,7 @@ class CheckedJson {
   std::vector<CheckedJson> array(std::string_view what) const;
   std::vector<CheckedJson> array_of(std::size_t size, std::string_view what) const;
   Vector3d vector() const;
-  /// "#rrggbb" or three linear numbers of 0 or more.
+  /// "black", "white", "#rrggbb" or three linear numbers of 0 or more.
   Color color() const;
 
   const std::string& key() const { return key_; }

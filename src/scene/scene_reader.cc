@@ -210,7 +210,7 @@ void read_camera(const Value& value, Scene& scene) {
   value.with("target", [&](const Value& v) { scene.target = Point3d(v.vector()); });
   value.with("up", [&](const Value& v) {
     scene.up = v.vector();
-    if (!(length(*scene.up) > 0)) v.expected("a vector that is not zero");
+    if (!(length(*scene.up) > 0)) v.fail("a direction must not be zero");
   });
   value.with("fov", [&](const Value& v) {
     constexpr const char* what = "an angle in degrees greater than 0 and less than 180";
@@ -245,7 +245,7 @@ Lighting read_lighting(const Value& value) {
   value.with("shininess", [&](const Value& v) { lighting.shininess = v.number_from_zero(); });
   value.with("direction", [&](const Value& v) {
     lighting.direction = v.vector();
-    if (!(length(*lighting.direction) > 0)) v.expected("a vector that is not zero");
+    if (!(length(*lighting.direction) > 0)) v.fail("a direction must not be zero");
   });
   return lighting;
 }

@@ -76,6 +76,8 @@ Color color_from_srgb(std::uint32_t rrggbb) {
 }
 
 std::optional<Color> color_from_text(std::string_view text) {
+  if (text == "black") return Color{0, 0, 0};
+  if (text == "white") return Color{1, 1, 1};
   if (text.size() != 7 || text[0] != '#') return std::nullopt;
   std::uint32_t srgb = 0;
   const auto [end, error] = std::from_chars(text.data() + 1, text.data() + 7, srgb, 16);

@@ -32,7 +32,7 @@ const std::vector<std::string>& color_map_names();
 /// 0xrrggbb, sRGB-encoded, as a linear colour.
 Color color_from_srgb(std::uint32_t rrggbb);
 
-/// "#rrggbb" as a linear colour; nullopt for any other text.
+/// "#rrggbb", "black" or "white" as a linear colour; nullopt for any other text.
 std::optional<Color> color_from_text(std::string_view text);
 
 /// A built-in colour map over [low, high], extinction rising linearly from 0 to `extinction`.

@@ -78,7 +78,9 @@ TEST_F(CommandLine, AWrongCommandLineIsStatus2) {
   failure("render", 2);
   EXPECT_THAT(failure("render a.xyz", 2), HasSubstr("--output"));
   EXPECT_THAT(failure("render a.xyz -o a.png --colour red", 2), HasSubstr("motes render --help"));
-  EXPECT_THAT(failure("render a.xyz -o a.tiff", 2), HasSubstr(".png"));
+  EXPECT_THAT(failure("render a.xyz -o a.tiff", 2), StartsWith("motes: error: --output: a.tiff: "));
+  EXPECT_THAT(failure("render a.xyz -o a.png --threads 0", 2),
+              HasSubstr("--threads: expected a whole number from 1 to 4096, found '0'"));
   failure("probe a.xyz", 2);
   for (const std::string bad : {"--size 100",
                                 "--size 0x5",
@@ -130,6 +132,26 @@ TEST_F(CommandLine, WrongNamesAreHelpedWithTheNearest) {
               HasSubstr("did you mean 'direct'"));
   EXPECT_THAT(failure("render a.xyz -o a.png --radius siize", 1),
               HasSubstr("unknown property 'siize'"));
+}
+
+TEST_F(CommandLine, MisspeltOptionsAndCommandsAreHelped) {
+  for (const std::string rest : {"render a.xyz -o a.png --trasfer-function magma",
+                                 "render --trasfer-function magma a.xyz -o a.png --sise 3x3",
+                                 "render a.xyz --trasfer-function=magma --ouput a.png"}) {
+    EXPECT_EQ(failure(rest, 2),
+              "motes: error: --trasfer-function: unknown option; did you mean "
+              "--transfer-function? (see motes render --help)\n");
+  }
+  EXPECT_EQ(failure("render a.xyz -o a.png --colour red", 2),
+            "motes: error: --colour: unknown option (see motes render --help)\n");
+  EXPECT_EQ(failure("info a.xyz one.xyz", 2),
+            "motes: error: unexpected argument 'one.xyz' (see motes info --help)\n");
+  EXPECT_EQ(failure("rendr a.xyz -o a.png", 2),
+            "motes: error: unknown command 'rendr'; did you mean 'render'? (see motes --help)\n");
+  EXPECT_THAT(failure("a.xyz", 2),
+              HasSubstr("a.xyz: expected a command first: 'motes render a.xyz -o picture.png' or "
+                        "'motes info a.xyz'"));
+  EXPECT_THAT(run("-v").out, StartsWith("motes "));
 }
 
 TEST_F(CommandLine, AFailureIsStatus1AndNamesTheFile) {
@@ -267,7 +289,9 @@ TEST_F(CommandLine, ATransferFunctionMayBeAFile) {
   EXPECT_GT(red, 1);
   EXPECT_EQ(green, 0);
   EXPECT_THAT(failure("render a.xyz -o a.npy --transfer-function none.json", 1),
-              HasSubstr("none.json: "));
+              HasSubstr("none.json: there is no such file"));
+  EXPECT_THAT(failure("render none.json -o a.npy", 1),
+              HasSubstr("none.json: there is no such file"));
   for (const std::string map :
        {"viridis", "magma", "inferno", "plasma", "heat", "grey", "species"}) {
     succeed("render a.xyz -o a.npy --size 16x16 --transfer-function " + map);
@@ -294,6 +318,16 @@ TEST_F(CommandLine, ParticlesThatCannotBeDrawnAreCounted) {
   EXPECT_THAT(failure("render s.json -o a.png", 1), HasSubstr("selects none of the 3 particles"));
 }
 
+TEST_F(CommandLine, NamesOfTypesThatAreNotThereAreTold) {
+  workspace_.write(
+      "a.dump",
+      "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS pp pp pp\n0 9\n0 9\n"
+      "0 9\nITEM: ATOMS id type x y z\n1 1 0 0 0\n2 2 1 1 1\n");
+  EXPECT_EQ(run("info a.dump --types 1=O,3=Si").err,
+            "motes: warning: a.dump: has no type 3 to be named Si; there are: 1, 2\n");
+  EXPECT_EQ(run("info a.dump --types 1=O,2=Si").err, "");
+}
+
 TEST_F(CommandLine, TheSweepIsAnnouncedAsMissing) {
   const Outcome outcome = run("render a.xyz -o a.png --size 16x16 --engine sweep --stats s.json");
   EXPECT_EQ(outcome.status, 0);
@@ -306,6 +340,21 @@ TEST_F(CommandLine, InfoPrintsATable) {
   EXPECT_EQ(outcome.status, 0);
   EXPECT_THAT(outcome.out, testing::ContainsRegex("particles +3\n"));
   EXPECT_THAT(outcome.out, testing::ContainsRegex("Si +2\n"));
+  EXPECT_THAT(outcome.out, testing::ContainsRegex("radius +covalent radii"));
+}
+
+TEST_F(CommandLine, InfoKeepsItsColumnsAndSaysWhichFrame) {
+  const std::string frame =
+      "1\nProperties=species:S:1:pos:R:3:q:R:1:a_very_long_name_of_a_property:R:1\nSi 1 2 3 5 7\n";
+  workspace_.write("long.xyz", frame + frame);
+  const std::string out = run("info long.xyz --frame 1").out;
+  EXPECT_THAT(out, testing::ContainsRegex("frames +2\nframe +1\n"));
+  const auto column = [&out](const std::string& value) {
+    const auto at = out.find(value);
+    EXPECT_NE(at, std::string::npos) << out;
+    return at - out.rfind('\n', at);
+  };
+  EXPECT_EQ(column("5 to 5"), column("7 to 7")) << out;
 }
 
 TEST_F(CommandLine, InfoPrintsJson) {

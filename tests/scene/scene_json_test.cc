@@ -31,6 +31,14 @@ std::string with_body(const std::string& body) {
   return R"({"version": 1, "data": {"path": "a.xyz"}, )" + body + "}";
 }
 
+TEST(ParseScene, KnowsColoursByName) {
+  const auto background = [](const std::string& name) {
+    return parse(with_body(R"("render": {"background": ")" + name + R"("})")).render.background;
+  };
+  EXPECT_EQ(background("white"), (Color{1, 1, 1}));
+  EXPECT_EQ(background("black"), (Color{0, 0, 0}));
+}
+
 TEST(ParseScene, ReadsEverything) {
   const Scene scene = parse(R"({
     "version": 1,
@@ -147,7 +155,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "camera.eye: expected an array of three numbers, found an array of 2"},
         Refusal{R"("camera": {"eye": [0, 1, "2"]})",
                 "camera.eye[2]: expected a number, found \"2\""},
-        Refusal{R"("camera": {"up": [0, 0, 0]})", "camera.up: expected a vector"},
+        Refusal{R"("camera": {"up": [0, 0, 0]})", "camera.up: a direction must not be zero"},
         Refusal{R"("camera": {"fov": 180})", "camera.fov: expected an angle"},
         Refusal{R"("camera": {"fov": 30, "orthographic": 10})", "camera: expected either"},
         Refusal{R"("camera": {"orthographic": 0})", "camera.orthographic: expected a number gr"},
@@ -205,7 +213,9 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{R"("render": {"step_size": 0})", "render.step_size: expected"},
         Refusal{R"("render": {"termination_opacity": 1.5})", "render.termination_opacity: exp"},
         Refusal{R"("render": {"lighting": {"shininess": -1}})", "render.lighting.shininess: exp"},
-        Refusal{R"("render": {"background": "black"})", "render.background: expected a colour"},
+        Refusal{R"("render": {"lighting": {"direction": [0, 0, 0]}})",
+                "render.lighting.direction: a direction must not be zero"},
+        Refusal{R"("render": {"background": "blakc"})", "render.background: expected a colour"},
         Refusal{R"("render": {"engine": "cells"})",
                 "render.engine: the engine 'cells' is not built yet"},
         Refusal{R"("render": {"engine": "swep"})",
