@@ -1,7 +1,7 @@
 // Frame times on a jittered lattice: the scene of docs/performance.md, "The paper's algorithm".
 //
-//   build/release/bench/bench_lattice [particles an axis, default 45] [engine: coherent|direct]
-//   [repeat]
+//   build/release/bench/bench_lattice [particles an axis, default 45] [engine:
+//   coherent|one-pass|direct] [repeat]
 //
 // Cubic lattice, spacing 2.475, jittered uniformly by +-0.6; a third with radius 1.11, the rest
 // 0.66; weight 1, sigma 2, step 0.5, 1024 x 1024, field of view 45; extinction 0 at values <= 0.2
@@ -81,10 +81,12 @@ int main(int argc, char** argv) {
     for (const double distance : {1.9, 0.75}) {
       ResolvedScene scene = make_scene(n, distance, extinction);
       scene.render.engine = engine == "direct" ? Engine::direct : Engine::coherent;
+      RenderOptions options;
+      if (engine == "one-pass") options.samples_per_pass = 0;
       std::vector<double> times;
       RenderStatistics statistics;
       for (int i = 0; i <= repeat; ++i) {
-        renderer.render(scene, {}, &statistics);
+        renderer.render(scene, options, &statistics);
         if (i > 0) times.push_back(statistics.frame_ms);
       }
       std::sort(times.begin(), times.end());

@@ -132,8 +132,9 @@ void run(const Options& options) {
     color_by_species(scene, input.particles);
     const auto fields = expand_fields(scene, input.particles);
     const auto sources = make_field_sources(fields, scene.kernel, input.particles, console);
+    console.update("building the tree", 0);
     renderer.emplace(input.particles, sources);
-    resolved = resolve(scene, input.particles, fields, sources, renderer->kernels());
+    resolved = resolve(scene, input.particles, fields, sources, renderer->kernels(), &console);
   }
   statistics.build_ms = renderer->build_ms();
   statistics.particles = renderer->kernels().size();

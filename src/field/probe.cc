@@ -39,22 +39,32 @@ void add_leaf(const KernelSet& kernels, std::size_t leaf, const Point3d& p, Fiel
   }
 }
 
+double largest_support_factor(const KernelSet& kernels) {
+  double largest = 0;
+  for (const FieldKernels& field : kernels.fields) {
+    largest = std::max(largest, field.kernel.support_factor);
+  }
+  return largest;
+}
+
+Point3d to_internal(const KernelSet& kernels, const Point3d& p) {
+  return Point3d{} + kernels.length_scale * (p - kernels.origin);
+}
+
 }  // namespace
 
 std::vector<FieldSample> probe(const KernelSet& kernels, std::span<const Point3d> points) {
   const std::size_t num_fields = kernels.fields.size();
-  double support_factor = 0;
+  const double support_factor = largest_support_factor(kernels);
   std::vector<double> unit;  // from internal values to the field's
   for (const FieldKernels& field : kernels.fields) {
-    support_factor = std::max(support_factor, field.kernel.support_factor);
     unit.push_back(field.peak_factor() / field.value_scale);
   }
   std::vector<FieldSample> samples(points.size() * num_fields);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points.size(), 64), [&](const auto& range) {
     for (std::size_t i = range.begin(); i != range.end(); ++i) {
       FieldSample* const sums = samples.data() + i * num_fields;
-      const Vector3d relative = kernels.length_scale * (points[i] - kernels.origin);
-      const Point3d p{relative.x, relative.y, relative.z};
+      const Point3d p = to_internal(kernels, points[i]);
       traverse(
           kernels.bvh,
           [&](const Bvh::Node& node) { return children_around(node, p, support_factor); },
@@ -68,6 +78,19 @@ std::vector<FieldSample> probe(const KernelSet& kernels, std::span<const Point3d
     }
   });
   return samples;
+}
+
+double mean_kernels_tested(const KernelSet& kernels, std::span<const Point3d> points) {
+  const double support_factor = largest_support_factor(kernels);
+  std::size_t leaves = 0;
+  for (const Point3d& point : points) {
+    const Point3d p = to_internal(kernels, point);
+    traverse(
+        kernels.bvh,
+        [&](const Bvh::Node& node) { return children_around(node, p, support_factor); },
+        [&](std::size_t) { ++leaves; });
+  }
+  return static_cast<double>(leaves * Bvh::leaf_size) / static_cast<double>(points.size());
 }
 
 }  // namespace motes

@@ -19,4 +19,8 @@ struct FieldSample {
 /// support a field is 0. A point that is not finite gives NaN.
 std::vector<FieldSample> probe(const KernelSet& kernels, std::span<const Point3d> points);
 
+/// How many kernels probe() looks at on average for one of `points`: what it costs. Precondition:
+/// there is a point.
+double mean_kernels_tested(const KernelSet& kernels, std::span<const Point3d> points);
+
 }  // namespace motes

@@ -1,20 +1,37 @@
 #include "render/resolve.h"
 
+#include <algorithm>
+#include <variant>
+
 #include "render/view_profile.h"
 #include "scene/fit.h"
 
 namespace motes {
+namespace {
+
+/// Whether a field's transfer function leaves anything to the data.
+bool is_open(const Field& field) {
+  if (std::holds_alternative<TransferFunction>(field.transfer_function)) return false;
+  const auto* named = std::get_if<NamedTransferFunction>(&field.transfer_function);
+  return named == nullptr || !named->range || !named->extinction;
+}
+
+}  // namespace
 
 ResolvedScene resolve(const Scene& scene, const ParticleSet& particles,
                       const std::vector<Field>& fields, const std::vector<FieldSource>& sources,
-                      const KernelSet& kernels) {
+                      const KernelSet& kernels, Progress* progress) {
   ResolvedScene resolved;
   resolved.render = scene.render;
   const double aspect = static_cast<double>(scene.render.width) / scene.render.height;
   resolved.camera = fit_camera(scene, visible_spheres(particles, sources), aspect);
   resolved.step_size = scene.render.step_size.value_or(default_step_size(sources, kernels.box()));
-  const auto profiles =
-      sample_view(kernels, resolved.camera, scene.render.width, scene.render.height);
+  // Without rays where nothing is left to fit: it would be work for nothing.
+  std::vector<RayProfiles> profiles(fields.size(), RayProfiles{{}, {0}, {}});
+  if (std::any_of(fields.begin(), fields.end(), is_open)) {
+    profiles =
+        sample_view(kernels, resolved.camera, scene.render.width, scene.render.height, progress);
+  }
   const double opacity = fit_opacity(profiles);
   for (std::size_t f = 0; f < fields.size(); ++f) {
     resolved.transfer_functions.push_back(fit_transfer_function(

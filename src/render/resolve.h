@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "core/report.h"
 #include "field/kernel_set.h"
 #include "scene/scene.h"
 
@@ -13,6 +14,6 @@ namespace motes {
 /// `sources` and `kernels` theirs. Throws Error for a camera or a transfer function that cannot be.
 ResolvedScene resolve(const Scene& scene, const ParticleSet& particles,
                       const std::vector<Field>& fields, const std::vector<FieldSource>& sources,
-                      const KernelSet& kernels);
+                      const KernelSet& kernels, Progress* progress = nullptr);
 
 }  // namespace motes

@@ -3,14 +3,16 @@
 
 #include <vector>
 
+#include "core/report.h"
 #include "field/kernel_set.h"
 #include "scene/camera.h"
 #include "scene/fit.h"
 
 namespace motes {
 
-/// One profile a field, for the picture of that camera and size. Deterministic.
+/// One profile a field, for the picture of that camera and size. Deterministic. Where many kernels
+/// overlap it takes fewer points.
 std::vector<RayProfiles> sample_view(const KernelSet& kernels, const Camera& camera, int width,
-                                     int height);
+                                     int height, Progress* progress = nullptr);
 
 }  // namespace motes
