@@ -125,10 +125,7 @@ void print_table(const std::string& path, const FileInfo& info) {
   }
   print_rows("species", species);
   print_rows("properties", properties);
-  if (particles.size() > 0) {
-    Warnings warnings;  // that radii are guessed is said here and no trouble
-    print_row("radius", default_radii(particles, warnings).source);
-  }
+  if (particles.size() > 0) print_row("radius", default_radii_source(particles));
   if (!particles.bonds.empty()) print_row("bonds", fmt::format("{}", particles.bonds.size()));
   print_row("length unit", particles.length_unit);
   if (particles.time) print_row("time", fmt::format("{:g}", *particles.time));

@@ -135,7 +135,7 @@ class GadgetSnapshot : public Trajectory {
   std::string length_unit() const;
   void add_table_masses(const std::vector<TypeRange>& types, ParticleSet& particles) const;
   void add_radii(const std::vector<TypeRange>& types, ParticleSet& particles) const;
-  void set_radii(const TypeRange& type, ParticleSet& particles, std::vector<float>& radius) const;
+  bool set_radii(const TypeRange& type, ParticleSet& particles, std::vector<float>& radius) const;
 
   std::vector<Hdf5File> parts_;
   const ReadOptions& options_;
@@ -240,13 +240,18 @@ void GadgetSnapshot::add_table_masses(const std::vector<TypeRange>& types,
 }
 
 void GadgetSnapshot::add_radii(const std::vector<TypeRange>& types, ParticleSet& particles) const {
-  if (particles.size() == 0) return;
-  std::vector<float> radius(particles.size());
-  for (const TypeRange& type : types) set_radii(type, particles, radius);
-  particles.properties.push_back({"radius", std::move(radius)});
+  std::vector<float> radius(particles.size(), std::numeric_limits<float>::quiet_NaN());
+  bool any = false;
+  for (const TypeRange& type : types) {
+    const bool given = set_radii(type, particles, radius);
+    any = any || given;
+    particles.radii_from_neighbors = particles.radii_from_neighbors || !given;
+  }
+  if (any) particles.properties.push_back({"radius", std::move(radius)});
 }
 
-void GadgetSnapshot::set_radii(const TypeRange& type, ParticleSet& particles,
+/// Sets the radii of one type, from what the file has of it; false if it has nothing.
+bool GadgetSnapshot::set_radii(const TypeRange& type, ParticleSet& particles,
                                std::vector<float>& radius) const {
   const auto values = [&](std::string_view name) -> std::span<float> {
     std::vector<float>* all = find_values(particles, name);
@@ -258,22 +263,20 @@ void GadgetSnapshot::set_radii(const TypeRange& type, ParticleSet& particles,
   const std::span<float> out = type.of(radius);
   double scale = support_per_sigma;
   if (const auto h = values("h"); !h.empty()) {
-    std::copy(h.begin(), h.end(), out.begin());
+    // NaN would ask for the distance to neighbours.
+    std::transform(h.begin(), h.end(), out.begin(), [](float v) { return std::isnan(v) ? 0 : v; });
     if (swift_) scale = 2;  // SWIFT's h is twice the standard deviation whatever its kernel
   } else {
     const auto mass = values("mass"), density = values("density"), volume = values("volume");
-    std::vector<float> support;
-    if (!volume.empty()) {
-      support = smoothing_lengths_from_density(volume, std::vector<float>(volume.size(), 1.0F));
-    } else if (!mass.empty() && !density.empty()) {
-      support = smoothing_lengths_from_density(mass, density);
-    } else {
-      support = smoothing_lengths_from_neighbors(
-          {type.of(particles.x), type.of(particles.y), type.of(particles.z)}, particles.cell);
-    }
+    if (volume.empty() && (mass.empty() || density.empty())) return false;
+    const std::vector<float> support =
+        volume.empty()
+            ? smoothing_lengths_from_density(mass, density)
+            : smoothing_lengths_from_density(volume, std::vector<float>(volume.size(), 1.0F));
     std::copy(support.begin(), support.end(), out.begin());
   }
   for (float& r : out) r = static_cast<float>(r / scale);
+  return true;
 }
 
 }  // namespace

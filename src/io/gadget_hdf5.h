@@ -17,7 +17,7 @@ bool is_gadget_hdf5(const Hdf5File& file);
 /// "neutrinos". Lengths stay in the file's unit, comoving where the file's are. The file's
 /// smoothing length is the property `h`; `radius` is the standard deviation of the code's kernel:
 /// h/2 for SWIFT, else h/3.651, h being the radius of support. Without one it comes from mass and
-/// density, else from the 32nd nearest neighbour of the same type.
+/// density, else `radii_from_neighbors` is set: the 32nd nearest neighbour of the same type.
 std::unique_ptr<Trajectory> open_gadget_hdf5(Hdf5File file, const ReadOptions& options);
 
 }  // namespace motes

@@ -37,6 +37,9 @@ struct ParticleSet {
   std::vector<std::uint16_t> species;      ///< index into species_names; one a particle, or empty
   std::vector<std::int64_t> ids;           ///< the file's own numbers; one a particle, or empty
   std::vector<Property> properties;
+  /// Whether particles without a radius (no property "radius", or NaN there) have the size that
+  /// their neighbours' distance gives, as N-body particles do: see default_radii().
+  bool radii_from_neighbors = false;
   std::vector<Bond> bonds;
 
   std::optional<Cell> cell;

@@ -5,16 +5,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <optional>
 
 #include "core/error.h"
 #include "particles/elements.h"
 #include "particles/neighbors.h"
+#include "particles/smoothing.h"
 
 namespace motes {
 
 namespace {
+
+constexpr const char* from_neighbors = "smoothing lengths, else the 32nd neighbour's distance";
 
 std::vector<std::size_t> count_species(const ParticleSet& particles) {
   std::vector<std::size_t> counts(particles.species_names.size());
@@ -54,6 +58,32 @@ std::optional<std::vector<float>> species_radii(const ParticleSet& particles, Wa
   return radii;
 }
 
+/// The property "radius", completed by the distances to neighbours.
+std::vector<float> complete_radii(const ParticleSet& particles) {
+  std::vector<float> radius(particles.size(), std::numeric_limits<float>::quiet_NaN());
+  if (const Property* own = particles.find_property("radius")) radius = own->values;
+  std::vector<std::vector<std::size_t>> lacking(particles.species_names.size() + 1);
+  for (std::size_t i = 0; i < radius.size(); ++i) {
+    if (!std::isnan(radius[i])) continue;
+    lacking[particles.species.empty() ? 0 : particles.species[i]].push_back(i);
+  }
+  for (const std::vector<std::size_t>& indices : lacking) {
+    const auto gather = [&](const std::vector<float>& values) {
+      std::vector<float> own(indices.size());
+      std::transform(indices.begin(), indices.end(), own.begin(),
+                     [&](std::size_t i) { return values[i]; });
+      return own;
+    };
+    const std::vector<float> x = gather(particles.x), y = gather(particles.y),
+                             z = gather(particles.z);
+    const std::vector<float> support = smoothing_lengths_from_neighbors({x, y, z}, particles.cell);
+    for (std::size_t k = 0; k < indices.size(); ++k) {
+      radius[indices[k]] = static_cast<float>(support[k] / support_per_sigma);
+    }
+  }
+  return radius;
+}
+
 }  // namespace
 
 double mean_neighbor_distance(const ParticleSet& particles) {
@@ -70,7 +100,14 @@ double mean_neighbor_distance(const ParticleSet& particles) {
   return count == 0 ? 0 : sum / static_cast<double>(count);
 }
 
+bool has_sizes(const ParticleSet& particles) {
+  return particles.radii_from_neighbors || particles.find_property("radius") != nullptr;
+}
+
 DefaultRadii default_radii(const ParticleSet& particles, Warnings& warnings) {
+  if (particles.radii_from_neighbors) {
+    return {complete_radii(particles), from_neighbors};
+  }
   if (const Property* radius = particles.find_property("radius")) {
     return {radius->values, "the file's radii or smoothing lengths"};
   }
@@ -85,6 +122,12 @@ DefaultRadii default_radii(const ParticleSet& particles, Warnings& warnings) {
     return {{static_cast<float>(distance / 2)}, "half the mean distance of nearest neighbours"};
   }
   return {{1.0F}, "1, since no two particles lie apart"};
+}
+
+std::string default_radii_source(const ParticleSet& particles) {
+  if (particles.radii_from_neighbors) return from_neighbors;
+  Warnings warnings;  // that radii are guessed is no trouble here
+  return default_radii(particles, warnings).source;
 }
 
 }  // namespace motes

@@ -153,7 +153,7 @@ FieldSource make_field_source(const ParticleSet& particles, const Field& field,
   }
 
   // Particles with sizes of their own stand for a density: of mass, or else of number.
-  const bool density = !field.radius && !field.weight && particles.find_property("radius");
+  const bool density = !field.radius && !field.weight && has_sizes(particles);
   const bool of_mass = density && particles.find_property("mass");
   const std::vector<float> radius = field.radius ? values_of(particles, *field.radius, "radius")
                                                  : default_radii(particles, warnings).radius;
@@ -190,7 +190,7 @@ FieldSource make_field_source(const ParticleSet& particles, const Field& field,
 }
 
 void color_by_species(Scene& scene, const ParticleSet& particles) {
-  if (particles.find_property("radius") != nullptr) return;
+  if (has_sizes(particles)) return;
   std::vector<bool> present(particles.species_names.size());
   for (const std::uint16_t s : particles.species) present[s] = true;
   std::size_t num_present = 0;

@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "io/reader.h"
+#include "particles/radii.h"
 #include "support/hdf5_writer.h"
 #include "support/shared_data.h"
 #include "support/temporary_directory.h"
@@ -79,7 +80,14 @@ TEST(GadgetHdf5, ReadsTypesMassesAndProperties) {
 TEST(GadgetHdf5, DerivesRadiiFromDensityAndNeighbours) {
   const TemporaryFile file("snapshot.hdf5");
   write_snapshot(file.path());
-  const std::vector<float> radius = values(read_first(file.path()), "radius");
+  const ParticleSet particles = read_first(file.path());
+  // The search for neighbours takes long: it is left to whoever needs radii.
+  EXPECT_THAT(values(particles, "radius"),
+              ElementsAre(testing::Gt(0), testing::Gt(0), testing::IsNan(), testing::IsNan(),
+                          testing::IsNan()));
+  EXPECT_TRUE(particles.radii_from_neighbors);
+  Warnings warnings;
+  const std::vector<float> radius = default_radii(particles, warnings).radius;
   // (4/3) pi H^3 density = 32 mass, and the cubic spline's sigma is H / 3.651.
   EXPECT_NEAR(radius[0], std::cbrt(32.0 / 3 * 3 / (4 * std::numbers::pi)) / 3.651484, 1e-5);
   // The two others of three lie at sqrt(27) and 2 sqrt(27) from the first: the second, scaled
@@ -174,6 +182,8 @@ TEST(GadgetHdf5, ReadsABareTableOfCoordinates) {
   const ParticleSet particles = read_first(file.path());
   EXPECT_EQ(particles.size(), 3u);
   EXPECT_TRUE(particles.species.empty());
+  EXPECT_TRUE(particles.radii_from_neighbors);
+  EXPECT_EQ(particles.find_property("radius"), nullptr);
 }
 
 TEST(PhantomHdf5, ConvertsTypesAndSmoothingLengths) {
@@ -225,7 +235,10 @@ TEST_P(SharedSnapshots, HaveTheNumberOfParticlesThatTheirNotesGive) {
   const ParticleSet particles = trajectory->read_frame(0);
   EXPECT_EQ(particles.size(), GetParam().num_particles);
   EXPECT_EQ(particles.length_unit, GetParam().length_unit);
-  for (const float radius : values(particles, "radius")) ASSERT_GT(radius, 0);
+  Warnings warnings;
+  const DefaultRadii radii = default_radii(particles, warnings);
+  ASSERT_EQ(radii.radius.size(), particles.size());
+  for (const float radius : radii.radius) ASSERT_GT(radius, 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace motes {
 namespace {
 
@@ -29,6 +31,37 @@ TEST(DefaultRadii, ComeFromThePropertyFirst) {
   particles.properties.push_back({"radius", std::vector<float>(8, 0.25F)});
   Warnings warnings;
   EXPECT_EQ(default_radii(particles, warnings).radius, std::vector<float>(8, 0.25F));
+}
+
+TEST(DefaultRadii, ComeFromNeighboursOfTheSameSpeciesWhereAskedFor) {
+  ParticleSet particles = lattice(10, 1);
+  // Two interleaved lattices: the first with radii of its own.
+  const std::uint16_t gas = particles.species_index("gas"), dark = particles.species_index("dark");
+  std::vector<float> radius(particles.size(), NAN);
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    particles.species.push_back(particles.x[i] < 5 ? gas : dark);
+    if (particles.species[i] == gas) radius[i] = 0.25F;
+  }
+  EXPECT_FALSE(has_sizes(particles));
+  particles.radii_from_neighbors = true;
+  EXPECT_TRUE(has_sizes(particles));
+  particles.properties.push_back({"radius", radius});
+  Warnings warnings;
+  const std::vector<float> found = default_radii(particles, warnings).radius;
+  ASSERT_EQ(found.size(), particles.size());
+  // In the middle of the dark half: 6 neighbours at 1, 12 at sqrt(2), 8 at sqrt(3), 6 at 2.
+  const std::size_t middle = 7 * 100 + 5 * 10 + 5;
+  EXPECT_NEAR(found[middle], 2 / 3.651484, 1e-5);
+  EXPECT_EQ(found[0], 0.25F);
+  EXPECT_EQ(default_radii_source(particles), default_radii(particles, warnings).source);
+}
+
+TEST(DefaultRadii, OfManyCoincidentNeighboursAreZero) {
+  ParticleSet particles = lattice(1, 1);
+  for (auto* values : {&particles.x, &particles.y, &particles.z}) values->resize(200000);
+  particles.radii_from_neighbors = true;
+  Warnings warnings;
+  EXPECT_EQ(default_radii(particles, warnings).radius, std::vector<float>(200000));
 }
 
 TEST(DefaultRadii, ComeFromTheElements) {
