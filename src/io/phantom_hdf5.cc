@@ -62,8 +62,8 @@ void add_radii(ParticleSet& particles) {
   constexpr double support_per_h = 2;
   std::vector<float> radius(particles.size());
   for (std::size_t i = 0; i < radius.size(); ++i) {
-    // A negative h marks a particle that was accreted.
-    radius[i] = static_cast<float>(std::abs(h->values[i]) * support_per_h / support_per_sigma);
+    // A negative h marks a particle that was accreted: no picture takes a negative radius.
+    radius[i] = static_cast<float>(h->values[i] * support_per_h / support_per_sigma);
   }
   particles.properties.push_back({"radius", std::move(radius)});
 }
