@@ -138,7 +138,7 @@ class GadgetSnapshot : public Trajectory {
   bool set_radii(const TypeRange& type, ParticleSet& particles, std::vector<float>& radius) const;
 
   std::vector<Hdf5File> parts_;
-  const ReadOptions& options_;
+  ReadOptions options_;
   bool swift_;
 };
 

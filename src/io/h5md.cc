@@ -161,7 +161,7 @@ class H5mdTrajectory : public Trajectory {
   void read_properties(std::uint64_t frame, ParticleSet& particles) const;
 
   Hdf5File file_;
-  const ReadOptions& options_;
+  ReadOptions options_;
   std::vector<ParticleGroup> groups_;
 };
 
@@ -233,7 +233,10 @@ void H5mdTrajectory::read_cell_and_time(std::uint64_t frame, ParticleSet& partic
       !std::all_of(edges->begin(), edges->end(), [](double e) { return std::isfinite(e); })) {
     return;
   }
-  const double factor = angstrom_per(unit_of(file_, group.position)).value_or(1);
+  // A box without a unit of its own has that of the positions.
+  const std::string own_unit = unit_of(file_, *find_element(file_, group.path + "/box/edges"));
+  const std::string unit = own_unit.empty() ? unit_of(file_, group.position) : own_unit;
+  const double factor = angstrom_per(unit).value_or(1);
   Cell cell;
   for (int v = 0; v < 3; ++v) {
     for (int axis = 0; axis < 3; ++axis) {

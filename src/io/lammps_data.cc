@@ -333,7 +333,7 @@ class DataReader {
   }
 
   const std::filesystem::path& path_;
-  const ReadOptions& options_;
+  ReadOptions options_;
   LineReader lines_;
   Header header_;
   TypeHints hints_;

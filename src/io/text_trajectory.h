@@ -44,7 +44,7 @@ class TextTrajectory : public Trajectory {
   bool at_end();
 
   std::filesystem::path path_;
-  const ReadOptions& options_;
+  ReadOptions options_;
   TextSource source_;
   std::vector<TextSource::Position> starts_{{}};  ///< of the frames that are known
   bool all_known_ = false;

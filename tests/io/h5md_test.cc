@@ -31,6 +31,16 @@ ParticleSet read(const std::filesystem::path& path, std::size_t frame,
   return open_trajectory(path, options)->read_frame(frame);
 }
 
+TEST(H5md, ConvertsABoxByItsOwnUnit) {
+  const TemporaryFile file("a.h5md");
+  {
+    Hdf5Writer writer(file.path());
+    write_trajectory(writer);
+    writer.text_attribute("particles/all/box/edges", "unit", "Angstrom");
+  }
+  EXPECT_EQ(read(file.path(), 0).cell->vectors[1], Vector3d(0, 4, 0));
+}
+
 TEST(H5md, ReadsFramesInAngstrom) {
   const TemporaryFile file("a.h5md");
   {
