@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cassert>
 
+#include "core/error.h"
+
 namespace motes {
 
 TextSource::TextSource(const std::filesystem::path& path, const ReadOptions& options)
@@ -45,8 +47,21 @@ std::string_view TextSource::loaded() const {
   return stream_ended_ ? text : text.substr(0, text.rfind('\n') + 1);
 }
 
+/// Throws Error if nothing but the beginning of a line is loaded, and that is too long: a few bytes
+/// of a compressed file can hold gigabytes without a line's end.
+void TextSource::refuse_endless_line() const {
+  constexpr std::size_t most_bytes = std::size_t{64} << 20;
+  const std::size_t last_end = window_.rfind('\n');
+  const std::size_t begin = last_end == std::string::npos ? 0 : last_end + 1;
+  if (window_.size() - begin <= most_bytes) return;
+  const std::uint64_t line = position_.line + static_cast<std::uint64_t>(std::count(
+                                                  loaded().begin(), loaded().end(), '\n'));
+  throw Error(path_, line, "a line of more than 64 MiB; expected text");
+}
+
 void TextSource::load_more() {
   assert(!complete());
+  refuse_endless_line();
   window_.erase(0, position_.offset - window_offset_);
   window_offset_ = position_.offset;
   const std::size_t old_size = window_.size();

@@ -21,7 +21,7 @@ class TextSource {
     std::uint64_t line = 1;
   };
 
-  /// `options` must outlive the source.
+  /// What `options` points to must outlive the source.
   TextSource(const std::filesystem::path& path, const ReadOptions& options);
 
   void seek(Position position);
@@ -32,14 +32,16 @@ class TextSource {
   std::string_view loaded() const;
   /// Whether loaded() reaches the end of the file.
   bool complete() const { return mapped_ != nullptr || stream_ended_; }
-  /// Loads at least as much again.
+  /// Loads at least as much again. Throws Error where a compressed file has a line of more than
+  /// 64 MiB.
   void load_more();
 
  private:
   void restart();
+  void refuse_endless_line() const;
 
   std::filesystem::path path_;
-  const ReadOptions& options_;
+  ReadOptions options_;
   Position position_;
   std::unique_ptr<MappedFile> mapped_;
   // A compressed file: window_ holds the content from window_offset_ on.

@@ -72,5 +72,12 @@ TEST(ByteStream, RefusesWhatIsNoFile) {
   EXPECT_THAT(error_of([] { MappedFile("/no/such/file"); }), HasSubstr("there is no such file"));
 }
 
+TEST(ByteStream, OfALineWithoutEndIsNotReadIntoMemory) {
+  const TemporaryFile file("a.xyz.zst",
+                           compress("1\n\nH 0 0 0" + std::string(70 << 20, ' '), "zstd"));
+  EXPECT_THAT(error_of([&] { open_trajectory(file.path(), {})->read_frame(0); }),
+              HasSubstr("a.xyz.zst:3: a line of more than 64 MiB; expected text"));
+}
+
 }  // namespace
 }  // namespace motes
