@@ -74,6 +74,7 @@ void run(const Options& options) {
   Scene scene = open_scene(options.path);
   options.changes.apply(scene);
   const Input input = read_particles(scene, console);
+  check_fields(scene, options.path, options.changes, input.particles);
   const auto fields = make_field_sources(expand_fields(scene, input.particles), scene.kernel,
                                          input.particles, console);
   const KernelSet kernels = build_kernel_set(input.particles, fields);

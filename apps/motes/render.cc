@@ -129,12 +129,17 @@ void run(const Options& options) {
     statistics.read_ms = input.read_ms;
     bounds = input.particles.bounds();
     length_unit = input.particles.length_unit;
+    check_fields(scene, options.path, options.changes, input.particles);
     color_by_species(scene, input.particles);
     const auto fields = expand_fields(scene, input.particles);
     const auto sources = make_field_sources(fields, scene.kernel, input.particles, console);
     console.update("building the tree", 0);
     renderer.emplace(input.particles, sources);
-    resolved = resolve(scene, input.particles, fields, sources, renderer->kernels(), &console);
+    try {
+      resolved = resolve(scene, input.particles, fields, sources, renderer->kernels(), &console);
+    } catch (const Error& error) {
+      fail_with_camera(error.what(), options.path, options.changes);
+    }
   }
   statistics.build_ms = renderer->build_ms();
   statistics.particles = renderer->kernels().size();

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -53,7 +54,9 @@ void add_option(CLI::App& command, SceneChanges& changes, const std::string& nam
   command
       .add_option_function<std::string>(
           name,
-          [&changes, read = std::move(read)](const std::string& text) { changes.add(read(text)); },
+          [&changes, name, read = std::move(read)](const std::string& text) {
+            changes.add(name, read(text));
+          },
           description)
       ->type_name(placeholder);
 }
@@ -232,8 +235,9 @@ void add_lighting_options(CLI::App& command, SceneChanges& changes) {
     return command
         .add_flag_callback(
             name,
-            [&changes, enabled] {
-              changes.add([enabled](Scene& scene) { scene.render.lighting.enabled = enabled; });
+            [&changes, name, enabled] {
+              changes.add(name,
+                          [enabled](Scene& scene) { scene.render.lighting.enabled = enabled; });
             },
             description)
         ->disable_flag_override();
@@ -243,6 +247,11 @@ void add_lighting_options(CLI::App& command, SceneChanges& changes) {
 }
 
 }  // namespace
+
+bool SceneChanges::contains(const std::string& option) const {
+  return std::any_of(changes_.begin(), changes_.end(),
+                     [&option](const auto& change) { return change.first == option; });
+}
 
 void add_data_options(CLI::App& command, SceneChanges& changes) {
   add_option(command, changes, "--frame", "N", "frame of a trajectory, from 0 (default: 0)",

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <functional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "scene/scene.h"
@@ -17,13 +19,17 @@ class SceneChanges {
  public:
   using Change = std::function<void(Scene&)>;
 
-  void add(Change change) { changes_.push_back(std::move(change)); }
-  void apply(Scene& scene) const {
-    for (const Change& change : changes_) change(scene);
+  void add(const std::string& option, Change change) {
+    changes_.emplace_back(option, std::move(change));
   }
+  void apply(Scene& scene) const {
+    for (const auto& [option, change] : changes_) change(scene);
+  }
+  /// Whether `option` was given, as "--radius".
+  bool contains(const std::string& option) const;
 
  private:
-  std::vector<Change> changes_;
+  std::vector<std::pair<std::string, Change>> changes_;
 };
 
 /// --frame, --types: which particles. `changes` must outlive the parsing.

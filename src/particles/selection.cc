@@ -226,6 +226,10 @@ void Program::apply_binary(Operation operation, std::size_t count, double* a, co
 
 void check_expression(std::string_view expression) { parse_expression(expression); }
 
+void check_expression(std::string_view expression, const ParticleSet& particles) {
+  Program(particles, expression);
+}
+
 std::vector<std::uint32_t> select_where(const ParticleSet& particles, std::string_view expression) {
   const Program program(particles, expression);
 

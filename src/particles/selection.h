@@ -13,6 +13,9 @@ namespace motes {
 /// of properties are not looked at: they need the particles.
 void check_expression(std::string_view expression);
 
+/// The same, and throws Error for names that the particles do not have.
+void check_expression(std::string_view expression, const ParticleSet& particles);
+
 /// The particles for which `expression` holds, as increasing indices. The language is described in
 /// docs/scene.md, "Expressions". Throws Error as check_expression() does, and for names that the
 /// particles do not have, naming the nearest that they have.

@@ -19,20 +19,21 @@ bool finite(double x, double y, double z) {
 
 CameraAxes camera_axes(const Camera& camera) {
   const Vector3d view = camera.target - camera.eye;
-  if (!finite(view.x, view.y, view.z)) throw Error("camera: eye and target must be finite");
+  if (!finite(view.x, view.y, view.z)) throw Error("camera.eye: must be finite, as the target");
   if (!(length(view) > 0)) {
-    throw Error("camera: eye and target are the same point; expected two different ones");
+    throw Error("camera.eye: is the same point as the target; expected two different ones");
   }
   if (!finite(camera.up.x, camera.up.y, camera.up.z) || !(length(camera.up) > 0)) {
-    throw Error("camera: up has no direction; expected a vector that is not zero");
+    throw Error("camera.up: a direction must not be zero");
   }
   if (camera.orthographic_height) {
     const double height = *camera.orthographic_height;
     if (!std::isfinite(height) || !(height > 0)) {
-      throw Error(fmt::format("camera: orthographic height is {}; expected more than 0", height));
+      throw Error(
+          fmt::format("camera.orthographic: the height is {}; expected more than 0", height));
     }
   } else if (!(camera.fov_degrees > 0 && camera.fov_degrees < 180)) {
-    throw Error(fmt::format("camera: fov is {} degrees; expected more than 0 and less than 180",
+    throw Error(fmt::format("camera.fov: is {} degrees; expected more than 0 and less than 180",
                             camera.fov_degrees));
   }
 
@@ -41,7 +42,7 @@ CameraAxes camera_axes(const Camera& camera) {
   const Vector3d right = cross(axes.forward, normalize(camera.up));
   if (!(length(right) > smallest_sine)) {
     throw Error(
-        "camera: up is parallel to the view from eye to target; expected another direction");
+        "camera.up: is parallel to the view from eye to target; expected another direction");
   }
   axes.x = normalize(right);
   axes.y = cross(axes.x, axes.forward);

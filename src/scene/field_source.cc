@@ -9,6 +9,7 @@
 #include "particles/elements.h"
 #include "particles/radii.h"
 #include "particles/selection.h"
+#include "scene/field_mistake.h"
 #include "scene/scene.h"
 
 namespace motes {
@@ -35,11 +36,12 @@ Error unknown_species(const std::string& name, const std::vector<std::string>& k
                            error.what(), known.front(), printable(name)));
 }
 
-void keep_species(const ParticleSet& particles, const std::vector<std::string>& names,
-                  std::vector<std::uint32_t>& index) {
+/// Which of the species are among `names`. Throws Error for unknown ones.
+std::vector<bool> find_species(const ParticleSet& particles,
+                               const std::vector<std::string>& names) {
   if (particles.species.empty()) {
-    throw Error(fmt::format("select.species: the particles have no species, so none is '{}'",
-                            printable(names.front())));
+    throw Error(
+        fmt::format("the particles have no species, so none is '{}'", printable(names.front())));
   }
   std::vector<bool> wanted(particles.species_names.size());
   for (const std::string& name : names) {
@@ -48,7 +50,7 @@ void keep_species(const ParticleSet& particles, const std::vector<std::string>& 
     if (it == known.end()) throw unknown_species(name, known);
     wanted[static_cast<std::size_t>(it - known.begin())] = true;
   }
-  keep_if(index, [&](std::uint32_t i) { return wanted[particles.species[i]]; });
+  return wanted;
 }
 
 std::vector<std::string> property_names(const ParticleSet& particles) {
@@ -57,14 +59,22 @@ std::vector<std::string> property_names(const ParticleSet& particles) {
   return names;
 }
 
-/// Values of all particles, one a particle or one for all.
+/// Throws Error for an unknown name.
+const Property& property_named(const ParticleSet& particles, const std::string& name) {
+  const Property* property = particles.find_property(name);
+  if (property == nullptr) throw unknown_name("property", name, property_names(particles));
+  return *property;
+}
+
+/// Values of all particles, one a particle or one for all. `key` is the field's, for messages.
 std::vector<float> values_of(const ParticleSet& particles, const NumberOrProperty& source,
-                             std::string_view what) {
+                             std::string_view key) {
   if (const double* number = std::get_if<double>(&source)) return {static_cast<float>(*number)};
-  const std::string& name = std::get<std::string>(source);
-  if (const Property* property = particles.find_property(name)) return property->values;
-  throw Error(fmt::format("{}: {}", what,
-                          unknown_name("property", name, property_names(particles)).what()));
+  try {
+    return property_named(particles, std::get<std::string>(source)).values;
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: {}", key, error.what()));
+  }
 }
 
 /// Leaves out the particles that have no place or no kernel, with a warning for each reason.
@@ -135,7 +145,10 @@ std::vector<std::uint32_t> select_particles(const ParticleSet& particles, const 
     keep_if(index,
             [first = first, last = last](std::uint32_t i) { return i >= first && i <= last; });
   }
-  if (!select.species.empty()) keep_species(particles, select.species, index);
+  if (!select.species.empty()) {
+    const std::vector<bool> wanted = find_species(particles, select.species);
+    keep_if(index, [&](std::uint32_t i) { return wanted[particles.species[i]]; });
+  }
   return index;
 }
 
@@ -187,6 +200,30 @@ FieldSource make_field_source(const ParticleSet& particles, const Field& field,
   source.weight = gather(weight, source.index);
   source.species_color = species_color(particles, source.index);
   return source;
+}
+
+std::optional<FieldMistake> find_mistake(const std::vector<Field>& fields,
+                                         const ParticleSet& particles) {
+  std::size_t k = 0;
+  const char* key = "";
+  try {
+    for (; k < fields.size(); ++k) {
+      const Selection& select = fields[k].select;
+      key = "select.species";
+      if (!select.species.empty()) find_species(particles, select.species);
+      key = "select.expression";
+      if (!select.expression.empty()) check_expression(select.expression, particles);
+      for (const auto& [name, value] :
+           {std::pair{"radius", &fields[k].radius}, std::pair{"weight", &fields[k].weight}}) {
+        key = name;
+        const auto* property = *value ? std::get_if<std::string>(&**value) : nullptr;
+        if (property != nullptr) property_named(particles, *property);
+      }
+    }
+  } catch (const Error& error) {
+    return FieldMistake{k, key, error.what()};
+  }
+  return std::nullopt;
 }
 
 void color_by_species(Scene& scene, const ParticleSet& particles) {

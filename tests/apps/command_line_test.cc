@@ -276,6 +276,27 @@ TEST_F(CommandLine, ASceneWithMistakesNamesTheKey) {
   EXPECT_THAT(failure("render s.json -o a.png", 1), HasSubstr("s.json:2: "));
 }
 
+TEST_F(CommandLine, MistakesThatTheDataShowNameTheirPlace) {
+  const auto scene = [this](const std::string& body) {
+    workspace_.write("s.json", R"({"version": 1, "data": {"path": "a.xyz"}, )" + body + "}");
+    return failure("render s.json -o a.png --size 8x8", 1);
+  };
+  const std::string start = "motes: error: s.json: ";
+  EXPECT_THAT(scene(R"("fields": [{}, {"select": {"species": "Sj"}}])"),
+              StartsWith(start + "fields[1].select.species: unknown species 'Sj'"));
+  EXPECT_THAT(scene(R"("fields": [{"select": {"expression": "q > 1"}}])"),
+              StartsWith(start + "fields[0].select.expression: "));
+  EXPECT_THAT(scene(R"("fields": [{"weight": "q"}])"),
+              StartsWith(start + "fields[0].weight: unknown property 'q'"));
+  EXPECT_THAT(scene(R"("camera": {"eye": [0, 9, 0], "target": [0, 0, 0], "up": [0, 1, 0]})"),
+              StartsWith(start + "camera.up: is parallel"));
+  EXPECT_THAT(failure("render a.xyz -o a.png --radius q", 1),
+              StartsWith("motes: error: --radius: unknown property 'q'"));
+  EXPECT_THAT(failure("probe a.xyz --points a.xyz --weight q", 1), HasSubstr("a.xyz"));
+  EXPECT_THAT(failure("render a.xyz -o a.png --eye 0,9,0 --target 0,0,0 --up 0,1,0", 1),
+              StartsWith("motes: error: --up: is parallel"));
+}
+
 TEST_F(CommandLine, ATransferFunctionMayBeAFile) {
   workspace_.write("t.json", R"({"points": [{"value": 0, "color": "#ff0000", "extinction": 0},
                                             {"value": 1, "color": "#ff0000", "extinction": 9}]})");

@@ -54,7 +54,7 @@ TEST(CameraAxes, RefusesWhatIsNoCamera) {
   camera.up = {0, 0, 3};
   EXPECT_THAT(message_of(camera), testing::HasSubstr("parallel"));
   camera.up = {0, 0, 0};
-  EXPECT_THAT(message_of(camera), testing::HasSubstr("not zero"));
+  EXPECT_THAT(message_of(camera), testing::HasSubstr("not be zero"));
   camera = {};
   camera.eye.x = NAN;
   EXPECT_THAT(message_of(camera), testing::HasSubstr("finite"));
