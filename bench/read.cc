@@ -69,6 +69,7 @@ double seconds_of_ase(const std::filesystem::path& path) {
 template <class F>
 double rate(const std::filesystem::path& path, int repeats, F&& seconds_of) {
   std::vector<double> seconds;
+  seconds.reserve(static_cast<std::size_t>(repeats));
   for (int i = 0; i < repeats; ++i) seconds.push_back(seconds_of(path));
   const double size = static_cast<double>(std::filesystem::file_size(path)) / megabyte;
   return size / median(seconds);

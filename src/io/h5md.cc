@@ -346,8 +346,7 @@ void H5mdTrajectory::read_properties(std::uint64_t frame, ParticleSet& particles
         add(name, first, group.size(), values->data(), 1);
       } else if (values->size() == 3 * group.size()) {
         for (std::size_t k = 0; k < 3; ++k) {
-          const std::string component(1, "xyz"[k]);
-          add(name == "velocity" ? "v" + component : name + "_" + component, first, group.size(),
+          add((name == "velocity" ? "v" : name + "_") + "xyz"[k], first, group.size(),
               values->data() + k, 3);
         }
       }

@@ -141,7 +141,7 @@ std::optional<Cell> Pdb::find_cell(const std::filesystem::path& path) {
   while (lines.skip_blank_lines()) {
     const std::string_view line = lines.next("a record");
     if (is_atom(record_of(line))) break;
-    if (record_of(line) == "CRYST1" && lines.rest().text.size() > 0) return read_cell(lines, line);
+    if (record_of(line) == "CRYST1" && !lines.rest().text.empty()) return read_cell(lines, line);
   }
   return std::nullopt;
 }

@@ -44,6 +44,7 @@ void expect_reference(const Cloud& cloud, const Point3d& center) {
   std::mt19937 random(4);
   std::uniform_real_distribution<double> offset(-7, 7);
   std::vector<Point3d> points;
+  points.reserve(200);
   for (int i = 0; i < 200; ++i) {
     points.push_back(center + Vector3d{offset(random), offset(random), offset(random)});
   }

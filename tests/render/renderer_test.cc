@@ -156,6 +156,7 @@ TEST(Renderer, SurvivesExtremeScales) {
     std::vector<Point3d> points;
     std::mt19937 random(1);
     std::uniform_real_distribution<double> coordinate(-4, 4);
+    points.reserve(200);
     for (int i = 0; i < 200; ++i) {
       points.push_back(
           {scale * coordinate(random), scale * coordinate(random), scale * coordinate(random)});
