@@ -252,12 +252,21 @@ ParticleSet read_crystal(const std::filesystem::path& path, cif::Block& block, c
   return atoms.finish();
 }
 
+/// The last line that is not blank, without blanks around it.
+std::string_view last_line(std::string_view content) {
+  content = trim(content);
+  return trim(content.substr(content.rfind('\n') + 1));
+}
+
 std::unique_ptr<Trajectory> open_cif(const std::filesystem::path& path,
                                      const ReadOptions& options) {
   const std::string content = read_decompressed(path, options);
-  if ((content.empty() || content.back() != '\n') && options.warnings != nullptr) {
-    options.warnings->add(
-        fmt::format("{}: the last line has no end; it may be cut short", printable(path.string())));
+  const auto warn = [&](std::string_view what) {
+    if (options.warnings == nullptr) return;
+    options.warnings->add(fmt::format("{}: {}", printable(path.string()), what));
+  };
+  if (content.empty() || content.back() != '\n') {
+    warn("the last line has no end; it may be cut short");
   }
   cif::Document document = parse(path, content);
   std::vector<ParticleSet> frames;
@@ -275,7 +284,16 @@ std::unique_ptr<Trajectory> open_cif(const std::filesystem::path& path,
     }
     cif::Table sites = block.find(
         "_atom_site_", {"fract_x", "fract_y", "fract_z", "?label", "?type_symbol", "?occupancy"});
-    if (sites.length() > 0) frames.push_back(read_crystal(path, block, sites, options));
+    if (sites.length() > 0) {
+      frames.push_back(read_crystal(path, block, sites, options));
+    } else if (block.find_value("_cell_length_a") != nullptr) {
+      warn(fmt::format("data_{} has a cell but no atoms; left out", printable(block.name)));
+    }
+  }
+  // Programs close every category of an mmCIF file with '#'; a cut at the end of a line shows only
+  // there.
+  if (macromolecule && content.find("\n#") != std::string::npos && last_line(content) != "#") {
+    warn("does not end with '#' as its other categories do; it may be cut short");
   }
   if (frames.empty()) {
     throw Error(path, "has no atoms; expected _atom_site with Cartn_x or fract_x, y and z");

@@ -174,8 +174,10 @@ ParticleSet Pdb::parse_frame(TextBlock frame) {
   std::vector<Connection> connections;
   ParticleSet particles;
   particles.cell = cell_;
+  bool ends_with_atom = false;
   while (lines.skip_blank_lines()) {
     const std::string_view line = lines.next("a record"), record = record_of(line);
+    ends_with_atom = is_atom(record);
     if (is_atom(record)) {
       // Column 17 tells alternates of one atom: chain, residue and name are the same.
       const std::string_view label = trim(columns(line, 17, 17));
@@ -186,6 +188,11 @@ ParticleSet Pdb::parse_frame(TextBlock frame) {
     } else if (record == "CONECT") {
       read_connections(line, connections);
     }
+  }
+  // A file cut at the end of a line reads as a whole one; only what should follow tells.
+  if (ends_with_atom) {
+    warn(fmt::format("{}: ends with an atom, without TER or END; it may be cut short",
+                     printable(path().string())));
   }
   set_positions(particles, atoms.position[0], atoms.position[1], atoms.position[2]);
   particles.length_unit = "angstrom";

@@ -28,6 +28,15 @@ std::string error_of(const std::string& content) {
   return error_of_reading(file.path());
 }
 
+std::vector<std::string> warnings_of(const std::string& content) {
+  const TemporaryFile file("a.cif", content);
+  Warnings warnings;
+  ReadOptions options;
+  options.warnings = &warnings;
+  open_trajectory(file.path(), options)->read_frame(0);
+  return warnings.lines();
+}
+
 const std::string cubic_cell =
     "data_test\n_cell_length_a 4\n_cell_length_b 4\n_cell_length_c 4.0(2)\n_cell_angle_alpha 90\n"
     "_cell_angle_beta 90\n_cell_angle_gamma 90\n";
@@ -46,6 +55,22 @@ TEST(Cif, ExpandsSymmetryWithoutDoublingSpecialPositions) {
   EXPECT_NEAR(particles.position(2).x, 3, 1e-6);
   EXPECT_THAT(particles.find_property("occupancy")->values, ElementsAre(1, 0.5, 0.5));
   EXPECT_EQ(particles.cell->vectors[2].z, 4);
+}
+
+TEST(Cif, WarnsOfBlocksThatLackTheirAtoms) {
+  const std::string whole = cubic_cell + inversion + sites + "C1 C 0.1 0 0 1\n";
+  EXPECT_THAT(warnings_of(whole), ElementsAre());
+  EXPECT_THAT(warnings_of(whole + "data_b\n" + cubic_cell.substr(10)),
+              ElementsAre(HasSubstr("data_b has a cell but no atoms")));
+}
+
+TEST(MmCif, WarnsWhereTheListOfAtomsIsNotClosed) {
+  const std::string whole =
+      "data_X\n#\n_entry.id X\n#\nloop_\n_atom_site.id\n_atom_site.type_symbol\n"
+      "_atom_site.Cartn_x\n_atom_site.Cartn_y\n_atom_site.Cartn_z\n1 C 1 2 3\n2 O 4 5 6\n#\n";
+  EXPECT_THAT(warnings_of(whole), ElementsAre());
+  const std::string cut = whole.substr(0, whole.size() - 2);
+  EXPECT_THAT(warnings_of(cut), ElementsAre(HasSubstr("may be cut short")));
 }
 
 TEST(Cif, TakesSymmetryFromTheGroupWhereNoneIsListed) {

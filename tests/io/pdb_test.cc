@@ -45,6 +45,21 @@ TEST(Pdb, ReadsColumns) {
   EXPECT_EQ(particles.length_unit, "angstrom");
 }
 
+TEST(Pdb, WarnsWhereTheFileEndsWithAnAtom) {
+  for (const bool whole : {true, false}) {
+    const TemporaryFile file("a.pdb", two_atoms + (whole ? "END\n" : ""));
+    Warnings warnings;
+    ReadOptions options;
+    options.warnings = &warnings;
+    EXPECT_EQ(open_trajectory(file.path(), options)->read_frame(0).size(), 2u);
+    if (whole) {
+      EXPECT_THAT(warnings.lines(), IsEmpty());
+    } else {
+      EXPECT_THAT(warnings.lines(), ElementsAre(HasSubstr("may be cut short")));
+    }
+  }
+}
+
 TEST(Pdb, ReadsModelsAsFramesWithTheCellOfTheFile) {
   const std::string model =
       "MODEL        1\nATOM      1  O   HOH A   1       1.000   2.000   3.000\nENDMDL\n";
