@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -111,6 +112,10 @@ void run(const Options& options) {
   }
   // Told at once, not after long work: an output that cannot be written.
   const ImageFormat format = image_format(options.output);
+  if (!options.stats.empty() && std::filesystem::weakly_canonical(options.stats) ==
+                                    std::filesystem::weakly_canonical(options.output)) {
+    throw Error(options.output, "is both --output and --stats; expected two different files");
+  }
   AtomicFile output(options.output);
   std::optional<AtomicFile> stats;
   if (!options.stats.empty()) stats.emplace(options.stats);

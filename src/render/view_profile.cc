@@ -67,7 +67,7 @@ ViewPoints spread_points(const KernelSet& kernels, const Camera& camera, double 
 ViewPoints choose_points(const KernelSet& kernels, const Camera& camera, double aspect) {
   constexpr int few = 8, rays_an_axis = 32, samples_per_ray = 96;
   constexpr double max_kernels = 1e8;
-  const ViewPoints trial = spread_points(kernels, camera, aspect, few, few);
+  ViewPoints trial = spread_points(kernels, camera, aspect, few, few);
   if (trial.points.empty()) return trial;
   const double cost =
       mean_kernels_tested(kernels, trial.points) * rays_an_axis * rays_an_axis * samples_per_ray;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <set>
 
 #include "core/error.h"
 #include "particles/elements.h"
@@ -28,7 +29,7 @@ bool is_number(const std::string& name) {
 }
 
 Error unknown_species(const std::string& name, const std::vector<std::string>& known) {
-  const Error error = unknown_name("species", name, known);
+  Error error = unknown_name("species", name, known);
   if (is_number(name) || known.empty() || !std::all_of(known.begin(), known.end(), is_number)) {
     return error;
   }
@@ -244,6 +245,21 @@ void color_by_species(Scene& scene, const ParticleSet& particles) {
   field.transfer_function = NamedTransferFunction{std::string(species_colors), {}, {}, {}};
 }
 
+namespace {
+
+/// A name that Motes gave may be one that the scene gives to another field: then it gets a number,
+/// for columns and messages go by the name.
+void number_repeated_names(std::vector<Field>& fields) {
+  std::set<std::string> taken;
+  for (Field& field : fields) {
+    const std::string name = field.name;
+    for (int n = 2; !taken.insert(field.name).second; ++n)
+      field.name = fmt::format("{}_{}", name, n);
+  }
+}
+
+}  // namespace
+
 std::vector<Field> expand_fields(const Scene& scene, const ParticleSet& particles) {
   std::vector<Field> wanted = scene.fields;
   if (wanted.empty()) wanted.emplace_back().name = "all";
@@ -276,6 +292,7 @@ std::vector<Field> expand_fields(const Scene& scene, const ParticleSet& particle
   if (fields.size() > max_fields) {
     throw Error(fmt::format("{} fields; expected at most {}", fields.size(), max_fields));
   }
+  number_repeated_names(fields);
   return fields;
 }
 

@@ -149,6 +149,15 @@ TEST(MakeFieldSource, RefusesFieldsWithoutParticles) {
             "radius: unknown property 'charg'; did you mean 'charge'?");
 }
 
+TEST(ExpandFields, GivesEveryFieldANameOfItsOwn) {
+  Scene scene;
+  scene.fields.resize(2);
+  scene.fields[0].name = "field1";  // what the second is called for lack of a name
+  const std::vector<Field> fields = expand_fields(scene, silica());
+  EXPECT_EQ(fields[0].name, "field1");
+  EXPECT_EQ(fields[1].name, "field1_2");
+}
+
 TEST(ExpandFields, GivesOneFieldOfAllByDefault) {
   const auto fields = expand_fields({}, silica());
   ASSERT_EQ(fields.size(), 1u);
