@@ -21,19 +21,9 @@ constexpr std::size_t name_width = 5;
 constexpr std::size_t first_number_column =
     20;  // after residue number and name, atom name and number
 
-std::optional<std::uint64_t> parse_count(std::string_view line) {
-  const auto count = to_integer(trim(line));
-  if (!count || *count < 0) return std::nullopt;
-  return static_cast<std::uint64_t>(*count);
-}
-
 std::uint64_t read_count(LineReader& lines) {
-  const std::string_view line = lines.next("the number of atoms");
-  const auto count = parse_count(line);
-  if (!count) {
-    lines.fail(fmt::format("expected the number of atoms, found '{}'", printable(trim(line))));
-  }
-  return *count;
+  constexpr std::string_view what = "the number of atoms";
+  return lines.parse_count(lines.next(what), what);
 }
 
 /// The box line: three lengths, and six more numbers if it is triclinic.
@@ -260,7 +250,7 @@ bool matches(std::string_view head) {
     line = head.substr(0, newline);
     head.remove_prefix(newline == std::string_view::npos ? head.size() : newline + 1);
   }
-  if (!parse_count(lines[1])) return false;
+  if (!to_count(lines[1])) return false;
   const std::string_view row = lines[2];
   const std::size_t width = number_width(row);
   if (width == 0 || row.size() < first_number_column + 2 * width + 1) return false;

@@ -104,12 +104,8 @@ void take_header_line(const LineReader& lines, const HeaderLine& line, Header& h
       header.general_cell->origin = {v[0], v[1], v[2]};
     }
   } else if (v.size() == 1) {
-    const auto count = to_integer(line.first_token);
-    if (!count || *count < 0) {
-      lines.fail(fmt::format("expected the number of {}, found '{}'", printable(line.words),
-                             printable(line.first_token)));
-    }
-    header.counts[line.words] = static_cast<std::uint64_t>(*count);
+    header.counts[line.words] =
+        lines.parse_count(line.first_token, fmt::format("the number of {}", printable(line.words)));
   }
 }
 

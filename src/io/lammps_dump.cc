@@ -116,12 +116,7 @@ FrameHeader parse_header(LineReader& lines) {
     } else if (line == "TIMESTEP") {
       header.timestep = parse_number(lines, trim(lines.next("the timestep")), "the timestep");
     } else if (line == "NUMBER OF ATOMS") {
-      const auto token = trim(lines.next("the number of atoms"));
-      const auto number = to_integer(token);
-      if (!number || *number < 0) {
-        lines.fail(fmt::format("expected the number of atoms, found '{}'", printable(token)));
-      }
-      num_atoms = static_cast<std::uint64_t>(*number);
+      num_atoms = lines.parse_count(lines.next("the number of atoms"), "the number of atoms");
     } else if (line.starts_with("BOX BOUNDS")) {
       header.box_line = lines.line();
       header.cell = parse_box(lines, split_tokens(line.substr(10)));

@@ -106,6 +106,12 @@ std::optional<std::int64_t> to_integer(std::string_view token) {
   return value;
 }
 
+std::optional<std::uint64_t> to_count(std::string_view text) {
+  const auto count = to_integer(trim(text));
+  if (!count || *count < 0) return std::nullopt;
+  return static_cast<std::uint64_t>(*count);
+}
+
 std::string_view trim(std::string_view text) {
   while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
   while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
@@ -197,6 +203,12 @@ bool LineReader::skip_blank_lines() {
   }
   if (!complete_) throw TextEnds(file_, next_line_, "the file ends here");
   return false;
+}
+
+std::uint64_t LineReader::parse_count(std::string_view text, std::string_view what) const {
+  const auto count = to_count(text);
+  if (!count) fail(fmt::format("expected {}, found '{}'", what, printable(trim(text))));
+  return *count;
 }
 
 void LineReader::fail(const std::string& message) const { throw Error(file_, line(), message); }

@@ -26,6 +26,8 @@ const char* parse_integer(const char* begin, const char* end, std::int64_t& valu
 /// The number that `token` is as a whole, if it is one.
 std::optional<double> to_real(std::string_view token);
 std::optional<std::int64_t> to_integer(std::string_view token);
+/// The count that `text` is, blanks around it aside: an integer of at least 0.
+std::optional<std::uint64_t> to_count(std::string_view text);
 
 /// `text` without blanks at either end.
 std::string_view trim(std::string_view text);
@@ -74,6 +76,10 @@ class LineReader {
   bool skip_blank_lines();
   /// The next line, not taken; "" at the end.
   std::string_view peek() const;
+
+  /// The count that `text`, of the line that next() gave last, is. Throws Error, "expected WHAT,
+  /// found 'TEXT'", if it is none.
+  std::uint64_t parse_count(std::string_view text, std::string_view what) const;
 
   /// Number in the file of the line that next() gave last.
   std::uint64_t line() const { return next_line_ - 1; }

@@ -19,19 +19,9 @@ namespace motes {
 
 namespace {
 
-std::optional<std::uint64_t> parse_count(std::string_view line) {
-  const auto count = to_integer(trim(line));
-  if (!count || *count < 0) return std::nullopt;
-  return static_cast<std::uint64_t>(*count);
-}
-
 std::uint64_t read_count(LineReader& lines) {
-  const std::string_view line = lines.next_filled("the number of atoms");
-  const auto count = parse_count(line);
-  if (!count) {
-    lines.fail(fmt::format("expected the number of atoms, found '{}'", printable(trim(line))));
-  }
-  return *count;
+  constexpr std::string_view what = "the number of atoms";
+  return lines.parse_count(lines.next_filled(what), what);
 }
 
 /// What a column of Properties=... is for.
@@ -123,7 +113,7 @@ class Xyz : public TextTrajectory {
     lines.next("the comment line");
     lines.skip(count, "atoms");
     // More rows than the count says must not be lost.
-    if (!lines.skip_blank_lines() || parse_count(lines.peek())) return;
+    if (!lines.skip_blank_lines() || to_count(lines.peek())) return;
     const std::string_view next = lines.next("");
     lines.fail(fmt::format("expected the number of atoms of a new frame after {} atoms, found '{}'",
                            count, printable(trim(next))));
@@ -200,7 +190,7 @@ bool matches(std::string_view head) {
     line = head.substr(0, newline);
     head.remove_prefix(newline == std::string_view::npos ? head.size() : newline + 1);
   }
-  const auto count = parse_count(lines[0]);
+  const auto count = to_count(lines[0]);
   if (!count) return false;
   if (lines[1].find("Properties=") != std::string_view::npos) return true;
   const auto row = split_tokens(lines[2]);

@@ -2,6 +2,7 @@
 #include "io/text.h"
 
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
@@ -80,6 +81,14 @@ TEST(ToInteger, KeepsToIntegers) {
   for (const char* text : {"", "9223372036854775808", "1.0", "1e5", "+", "+-5", "5x", " 5"}) {
     EXPECT_FALSE(to_integer(text)) << text;
   }
+}
+
+TEST(LineReader, NamesTheLineOfWhatIsNoCount) {
+  const std::filesystem::path file("a.txt");
+  LineReader lines(file, {" 12 \r\n-1\n", 5}, true);
+  EXPECT_EQ(lines.parse_count(lines.next(""), "a count"), 12u);
+  EXPECT_THAT([&] { lines.parse_count(lines.next(""), "a count"); },
+              testing::ThrowsMessage<Error>("a.txt:6: expected a count, found '-1'"));
 }
 
 TEST(LineReader, CountsLinesWhateverTheyEndIn) {
