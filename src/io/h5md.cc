@@ -12,6 +12,7 @@
 
 #include "core/error.h"
 #include "io/bytes.h"
+#include "io/text.h"
 #include "particles/elements.h"
 
 namespace motes {
@@ -116,6 +117,22 @@ std::optional<double> angstrom_per(const std::string& unit) {
     return 1;
   }
   return std::nullopt;
+}
+
+/// What turns a velocity of the group into angstrom per unit of time, where positions are converted
+/// too: the factor of the length in its own unit ("nm ps-1", "Angstrom/fs"), or that of positions
+/// where it has no unit. 1 where nothing is converted.
+double velocity_factor(const Hdf5File& file, const ParticleGroup& group,
+                       const H5mdElement& velocity) {
+  const auto of_positions = angstrom_per(unit_of(file, group.position));
+  std::string unit = unit_of(file, velocity);
+  if (!of_positions || unit.empty()) return of_positions.value_or(1);
+  std::replace(unit.begin(), unit.end(), '/', ' ');
+  for (std::string_view symbol : split_tokens(unit)) {
+    if (symbol.ends_with("+1")) symbol.remove_suffix(2);
+    if (const auto factor = angstrom_per(std::string(symbol))) return *factor;
+  }
+  return 1;
 }
 
 std::vector<ParticleGroup> find_groups(const Hdf5File& file) {
@@ -340,8 +357,13 @@ void H5mdTrajectory::read_properties(std::uint64_t frame, ParticleSet& particles
   for (const ParticleGroup& group : groups_) {
     for (const std::string& name : file_.members(group.path)) {
       if (name == "position" || name == "species" || name == "id" || name == "box") continue;
-      const auto values = read_if_there<float>(file_, group, name, frame);
+      auto values = read_if_there<float>(file_, group, name, frame);
       if (!values) continue;
+      if (name == "velocity") {
+        const auto factor = static_cast<float>(
+            velocity_factor(file_, group, *find_element(file_, group.path + "/velocity")));
+        for (float& value : *values) value *= factor;
+      }
       if (values->size() == group.size()) {
         add(name, first, group.size(), values->data(), 1);
       } else if (values->size() == 3 * group.size()) {

@@ -46,7 +46,6 @@ TEST(H5md, ReadsFramesInAngstrom) {
   {
     Hdf5Writer writer(file.path());
     write_trajectory(writer);
-    writer.dataset("particles/all/velocity/value", {2, 2, 3}, std::vector<double>(12, 2));
     writer.dataset("particles/all/charge", {2}, {1, -1});
   }
   EXPECT_EQ(open_trajectory(file.path(), {})->num_frames(), 2u);
@@ -58,8 +57,32 @@ TEST(H5md, ReadsFramesInAngstrom) {
   EXPECT_EQ(particles.cell->vectors[1], Vector3d(0, 40, 0));
   EXPECT_TRUE(particles.species.empty());
   EXPECT_THAT(particles.find_property("charge")->values, ElementsAre(1, -1));
-  EXPECT_THAT(particles.find_property("vy")->values, ElementsAre(2, 2));
   EXPECT_THROW(read(file.path(), 2), Error);
+}
+
+TEST(H5md, ConvertsVelocitiesAsPositionsOrByTheLengthInTheirUnit) {
+  const TemporaryFile file("a.h5md");
+  const auto velocity = [&](const std::string& position_unit, const std::string& unit) {
+    {
+      Hdf5Writer writer(file.path());
+      writer.group("h5md");
+      writer.dataset("particles/all/position", {1, 3}, {1, 2, 3});
+      writer.dataset("particles/all/velocity", {1, 3}, {4, 5, 6});
+      if (!position_unit.empty()) {
+        writer.text_attribute("particles/all/position", "unit", position_unit);
+      }
+      if (!unit.empty()) writer.text_attribute("particles/all/velocity", "unit", unit);
+    }
+    return read(file.path(), 0).find_property("vy")->values.at(0);
+  };
+  EXPECT_EQ(velocity("nm", ""), 50);
+  EXPECT_EQ(velocity("nm", "nm ps-1"), 50);
+  EXPECT_EQ(velocity("nm", "ps-1 nm+1"), 50);
+  EXPECT_EQ(velocity("nm", "Angstrom/fs"), 5);
+  EXPECT_EQ(velocity("nm", "m s-1"), 5);
+  EXPECT_EQ(velocity("Angstrom", "nm/ps"), 50);
+  EXPECT_EQ(velocity("", ""), 5);
+  EXPECT_EQ(velocity("sigma", "nm ps-1"), 5);
 }
 
 TEST(H5md, NamesSpeciesByElementOrByLabel) {
