@@ -12,6 +12,7 @@
 
 #include "core/error.h"
 #include "io/bytes.h"
+#include "io/hdf5_columns.h"
 #include "io/text.h"
 #include "particles/elements.h"
 
@@ -353,15 +354,20 @@ void H5mdTrajectory::read_properties(std::uint64_t frame, ParticleSet& particles
     column.resize(particles.size(), std::numeric_limits<float>::quiet_NaN());
     for (std::size_t i = 0; i < count; ++i) column[first + i] = values[i * stride];
   };
+  std::vector<std::string> imprecise;
   std::size_t first = 0;
   for (const ParticleGroup& group : groups_) {
     for (const std::string& name : file_.members(group.path)) {
       if (name == "position" || name == "species" || name == "id" || name == "box") continue;
       auto values = read_if_there<float>(file_, group, name, frame);
       if (!values) continue;
+      const auto element = find_element(file_, fmt::format("{}/{}", group.path, name));
+      if (file_.type(element->dataset) == Hdf5Type::integer && may_lack_digits(*values)) {
+        imprecise.push_back(element->path);
+        continue;
+      }
       if (name == "velocity") {
-        const auto factor = static_cast<float>(
-            velocity_factor(file_, group, *find_element(file_, group.path + "/velocity")));
+        const auto factor = static_cast<float>(velocity_factor(file_, group, *element));
         for (float& value : *values) value *= factor;
       }
       if (values->size() == group.size()) {
@@ -375,6 +381,7 @@ void H5mdTrajectory::read_properties(std::uint64_t frame, ParticleSet& particles
     }
     first += group.size();
   }
+  warn_of_left_out(imprecise, lack_of_digits, options_);
   for (auto& [name, values] : properties) particles.properties.push_back({name, std::move(values)});
 }
 

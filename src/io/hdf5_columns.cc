@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <span>
@@ -137,41 +138,59 @@ void drop_what_is_too_much(std::vector<Column>& columns, std::uint64_t num_parti
                            const ReadOptions& options) {
   constexpr std::uint64_t budget_bytes = std::uint64_t{2} << 30;
   std::uint64_t bytes = 0;
-  std::string dropped;
+  std::vector<std::string> dropped;
   std::erase_if(columns, [&](const Column& column) {
     const std::uint64_t more = num_particles * sizeof(float) * column.properties.size();
     if (!column.wanted && bytes + more > budget_bytes) {
-      dropped += (dropped.empty() ? "" : ", ") + column.dataset;
+      dropped.push_back(column.dataset);
       return true;
     }
     bytes += more;
     return false;
   });
-  if (!dropped.empty() && options.warnings != nullptr) {
-    options.warnings->add(fmt::format("left out for want of memory: {}", printable(dropped, 200)));
-  }
+  warn_of_left_out(dropped, "for want of memory", options);
 }
 
-void read_properties(const std::vector<Hdf5Block>& blocks, const Column& column,
+/// False, and nothing is added, if the column is of integers that floats may not tell apart.
+bool read_properties(const std::vector<Hdf5Block>& blocks, const Column& column,
                      std::uint64_t num_particles, RowProgress& progress, ParticleSet& particles) {
   std::array<std::vector<float>, 3> values;
   for (std::size_t k = 0; k < column.properties.size(); ++k) {
     values[k].assign(num_particles, not_given);
   }
+  bool integers = false;
   for (const Hdf5Block& block : blocks) {
     if (!block.has(column.dataset)) continue;
+    integers |= block.file->type(block.dataset(column.dataset)) == Hdf5Type::integer;
     if (column.properties.size() == 1) {
       read_into<float, 1>(block, column.dataset, {&values[0]}, progress);
     } else {
       read_into<float, 3>(block, column.dataset, {&values[0], &values[1], &values[2]}, progress);
     }
   }
+  if (integers && !column.wanted && std::any_of(values.begin(), values.end(), may_lack_digits)) {
+    return false;
+  }
   for (std::size_t k = 0; k < column.properties.size(); ++k) {
     particles.properties.push_back({column.properties[k], std::move(values[k])});
   }
+  return true;
 }
 
 }  // namespace
+
+bool may_lack_digits(const std::vector<float>& integers) {
+  constexpr float first_gap = 1 << std::numeric_limits<float>::digits;
+  return std::any_of(integers.begin(), integers.end(),
+                     [](float value) { return std::abs(value) >= first_gap; });
+}
+
+void warn_of_left_out(const std::vector<std::string>& datasets, std::string_view reason,
+                      const ReadOptions& options) {
+  if (datasets.empty() || options.warnings == nullptr) return;
+  const std::string names = fmt::format("{}", fmt::join(datasets, ", "));
+  options.warnings->add(fmt::format("left out {}: {}", reason, printable(names, 200)));
+}
 
 std::string Hdf5Block::dataset(std::string_view name) const {
   return group == "/" ? std::string(name) : fmt::format("{}/{}", group, name);
@@ -214,9 +233,13 @@ void read_columns(const std::vector<Hdf5Block>& blocks, std::string_view positio
       read_into<std::int64_t, 1>(block, id, {&particles.ids}, progress);
     }
   }
+  std::vector<std::string> imprecise;
   for (const Column& column : columns) {
-    read_properties(blocks, column, num_particles, progress, particles);
+    if (!read_properties(blocks, column, num_particles, progress, particles)) {
+      imprecise.push_back(column.dataset);
+    }
   }
+  warn_of_left_out(imprecise, lack_of_digits, options);
 }
 
 }  // namespace motes

@@ -29,6 +29,18 @@ struct Hdf5Block {
 /// numbers.
 std::uint64_t count_positions(const Hdf5File& file, const std::string& dataset);
 
+/// Whether integers that were read as these floats may have lost digits: one is 2^24 or more, from
+/// where on floats do not tell all integers apart. Numbers of particles and the like would go
+/// wrong.
+bool may_lack_digits(const std::vector<float>& integers);
+
+/// Why datasets with such integers are left out.
+inline constexpr std::string_view lack_of_digits = "as integers beyond single precision";
+
+/// Adds the warning "left out REASON: DATASETS" unless there are none.
+void warn_of_left_out(const std::vector<std::string>& datasets, std::string_view reason,
+                      const ReadOptions& options);
+
 /// What the file's names become; vectors that are not named get _x, _y and _z.
 struct ColumnName {
   std::string_view dataset;
@@ -38,7 +50,8 @@ struct ColumnName {
 /// Reads all blocks into `particles`: positions from the dataset `position` of each, and every
 /// other dataset of numbers with n or n x 3 values as properties (NaN for the blocks that lack it),
 /// those in `names` under their names there. Integers of the dataset `id` become ids if all blocks
-/// have them. Properties beyond 2 GiB are left out with a warning, but never those in `names`.
+/// have them. Properties beyond 2 GiB, and integers that may_lack_digits(), are left out with a
+/// warning, but never those in `names`.
 void read_columns(const std::vector<Hdf5Block>& blocks, std::string_view position,
                   std::string_view id, const std::vector<ColumnName>& names,
                   const ReadOptions& options, ParticleSet& particles);

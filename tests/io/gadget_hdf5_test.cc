@@ -119,6 +119,31 @@ TEST(GadgetHdf5, ConvertsSmoothingLengthsByCode) {
   EXPECT_EQ(particles.length_unit, "Mpc");
 }
 
+TEST(GadgetHdf5, LeavesOutIntegersThatWouldLoseDigits) {
+  const TemporaryFile file("snapshot.hdf5");
+  {
+    Hdf5Writer writer(file.path());
+    writer.dataset("PartType0/Coordinates", {2, 3}, counting(6));
+    writer.dataset("PartType0/GroupNr", {2}, {16777215, -1}, H5T_STD_I32LE);
+    writer.dataset("PartType0/Masses", {2}, {1, 20000000}, H5T_STD_I32LE);
+    writer.dataset("PartType0/Potential", {2}, {1, 20000000});
+    writer.dataset("PartType0/ProgenitorIDs", {2}, {16777217, 5}, H5T_STD_U64LE);
+    writer.dataset("PartType0/Tree", {2, 3}, {1, 2, 3, 4, 5, -16777217}, H5T_STD_I64LE);
+    writer.dataset("PartType1/Coordinates", {2, 3}, counting(6));
+    writer.dataset("PartType1/ProgenitorIDs", {2}, {1, 2}, H5T_STD_U64LE);
+  }
+  Warnings warnings;
+  ReadOptions options;
+  options.warnings = &warnings;
+  const ParticleSet particles = open_trajectory(file.path(), options)->read_frame(0);
+  std::vector<std::string> names;
+  for (const Property& property : particles.properties) names.push_back(property.name);
+  EXPECT_THAT(names, testing::UnorderedElementsAre("mass", "Potential", "GroupNr"));
+  EXPECT_EQ(values(particles, "GroupNr")[0], 16777215);
+  EXPECT_THAT(warnings.lines(), ElementsAre("left out as integers beyond single precision: "
+                                            "ProgenitorIDs, Tree"));
+}
+
 TEST(GadgetHdf5, OfTheHeaderAndTheDataBothMustAgree) {
   const TemporaryFile file("snapshot.hdf5");
   {

@@ -85,6 +85,26 @@ TEST(H5md, ConvertsVelocitiesAsPositionsOrByTheLengthInTheirUnit) {
   EXPECT_EQ(velocity("sigma", "nm ps-1"), 5);
 }
 
+TEST(H5md, LeavesOutIntegersThatWouldLoseDigits) {
+  const TemporaryFile file("a.h5md");
+  {
+    Hdf5Writer writer(file.path());
+    write_trajectory(writer);
+    writer.dataset("particles/all/molecule", {2}, {16777215, -16777215}, H5T_STD_I64LE);
+    writer.dataset("particles/all/parent", {2}, {1, 16777217}, H5T_STD_I64LE);
+    writer.dataset("particles/all/energy", {2}, {1, 16777217});
+  }
+  Warnings warnings;
+  ReadOptions options;
+  options.warnings = &warnings;
+  const ParticleSet particles = read(file.path(), 0, options);
+  EXPECT_THAT(particles.find_property("molecule")->values, ElementsAre(16777215, -16777215));
+  EXPECT_EQ(particles.find_property("parent"), nullptr);
+  EXPECT_NE(particles.find_property("energy"), nullptr);
+  EXPECT_THAT(warnings.lines(), ElementsAre("left out as integers beyond single precision: "
+                                            "particles/all/parent"));
+}
+
 TEST(H5md, NamesSpeciesByElementOrByLabel) {
   const TemporaryFile file("a.h5md");
   {
