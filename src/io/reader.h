@@ -34,7 +34,7 @@ class Trajectory {
 
 /// Opens `path`, finding the format from its content first and its name second, through gz, bz2, xz
 /// and zst compression. Throws Error if it cannot be read or its format is not known.
-/// `options` and what it points to must outlive the trajectory.
+/// The progress and warnings that `options` points to must outlive the trajectory.
 std::unique_ptr<Trajectory> open_trajectory(const std::filesystem::path& path,
                                             const ReadOptions& options);
 
