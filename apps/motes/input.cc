@@ -54,15 +54,4 @@ void fail_with_camera(const std::string& message, const std::filesystem::path& p
   throw Error(path, message);
 }
 
-std::vector<FieldSource> make_field_sources(const std::vector<Field>& fields, const Kernel& kernel,
-                                            const ParticleSet& particles, Console& console) {
-  std::vector<FieldSource> sources;
-  sources.reserve(fields.size());
-  for (const Field& field : fields) {
-    sources.push_back(make_field_source(particles, field, kernel, console.warnings()));
-  }
-  console.print_warnings();
-  return sources;
-}
-
 }  // namespace motes

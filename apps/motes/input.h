@@ -34,8 +34,4 @@ void check_fields(const Scene& scene, const std::filesystem::path& path,
 [[noreturn]] void fail_with_camera(const std::string& message, const std::filesystem::path& path,
                                    const SceneChanges& changes);
 
-/// The fields of the scene, ready to be sampled.
-std::vector<FieldSource> make_field_sources(const std::vector<Field>& fields, const Kernel& kernel,
-                                            const ParticleSet& particles, Console& console);
-
 }  // namespace motes

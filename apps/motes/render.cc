@@ -137,7 +137,9 @@ void run(const Options& options) {
     check_fields(scene, options.path, options.changes, input.particles);
     color_by_species(scene, input.particles);
     const auto fields = expand_fields(scene, input.particles);
-    const auto sources = make_field_sources(fields, scene.kernel, input.particles, console);
+    const auto sources =
+        make_field_sources(input.particles, fields, scene.kernel, console.warnings(), &console);
+    console.print_warnings();
     console.update("building the tree", 0);
     renderer.emplace(input.particles, sources);
     try {

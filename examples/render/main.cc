@@ -2,7 +2,6 @@
 #include <motes/motes.h>
 
 #include <iostream>
-#include <vector>
 
 int main(int argc, char** argv) try {
   if (argc != 3) throw motes::Error("usage: render_example FILE PICTURE.png");
@@ -13,10 +12,7 @@ int main(int argc, char** argv) try {
   // What a scene file would say; empty, everything is fitted to the data.
   const motes::Scene scene;
   const auto fields = motes::expand_fields(scene, particles);
-  std::vector<motes::FieldSource> sources;
-  for (const auto& field : fields) {
-    sources.push_back(motes::make_field_source(particles, field, scene.kernel, warnings));
-  }
+  const auto sources = motes::make_field_sources(particles, fields, scene.kernel, warnings);
 
   const motes::Renderer renderer(particles, sources);
   const auto resolved = motes::resolve(scene, particles, fields, sources, renderer.kernels());

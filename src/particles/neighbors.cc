@@ -154,16 +154,27 @@ float NeighborTree::kth_distance(const Point& query, Nearest& nearest) const {
   return std::sqrt(nearest.bound());
 }
 
-std::vector<float> NeighborTree::kth_distances(int k) const {
+std::vector<float> NeighborTree::kth_distances(int k, const std::vector<bool>& wanted,
+                                               Progress* progress) const {
+  assert(wanted.empty() || wanted.size() == num_coordinates_);
   std::vector<float> distances(num_coordinates_, infinity);
-  // In the tree's order, so that queries in a row walk the same nodes.
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points_.size(), 256),
-                    [&](const tbb::blocked_range<std::size_t>& range) {
-                      Nearest nearest(k);
-                      for (std::size_t i = range.begin(); i < range.end(); ++i) {
-                        distances[points_[i].index] = kth_distance(points_[i], nearest);
-                      }
-                    });
+  const auto query = [&](const tbb::blocked_range<std::size_t>& range) {
+    Nearest nearest(k);
+    for (std::size_t i = range.begin(); i < range.end(); ++i) {
+      const std::uint32_t index = points_[i].index;
+      if (wanted.empty() || wanted[index]) distances[index] = kth_distance(points_[i], nearest);
+    }
+  };
+  // In the tree's order, so that queries in a row walk the same nodes; in batches, so that the user
+  // sees it go on.
+  const std::size_t n = points_.size(), batch = n / 50 + 1;
+  for (std::size_t begin = 0; begin < n; begin += batch) {
+    const std::size_t end = std::min(begin + batch, n);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(begin, end, 256), query);
+    if (progress != nullptr) {
+      progress->update("finding neighbours", static_cast<double>(end) / static_cast<double>(n));
+    }
+  }
   return distances;
 }
 

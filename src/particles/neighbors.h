@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "core/report.h"
 #include "core/vec.h"
 #include "particles/cell.h"
 
@@ -32,11 +33,13 @@ class NeighborTree {
   /// Number of finite positions.
   std::size_t size() const { return points_.size(); }
 
-  /// The distance from each particle to its k-th nearest other particle (its own images count as
-  /// others), in the order of the coordinates; infinity where there are fewer than k, and for
-  /// positions that are not finite. In parallel; the result does not depend on the number of
-  /// threads. Precondition: k >= 1.
-  std::vector<float> kth_distances(int k) const;
+  /// The distance from each `wanted` particle (all, where that is empty) to its k-th nearest other
+  /// particle, wanted or not (its own images count as others), in the order of the coordinates;
+  /// infinity where there are fewer than k, for positions that are not finite and for particles
+  /// that are not wanted. In parallel; the result does not depend on the number of threads.
+  /// Precondition: k >= 1.
+  std::vector<float> kth_distances(int k, const std::vector<bool>& wanted = {},
+                                   Progress* progress = nullptr) const;
 
   /// Distances to the nearest neighbour of about `num_samples` particles (of all, if there are
   /// fewer), evenly chosen: always the same ones. Infinity where there is no other particle.

@@ -4,10 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <numeric>
 #include <optional>
+#include <type_traits>
 
 #include "core/error.h"
 #include "particles/elements.h"
@@ -58,8 +60,9 @@ std::optional<std::vector<float>> species_radii(const ParticleSet& particles, Wa
   return radii;
 }
 
-/// The property "radius", completed by the distances to neighbours.
-std::vector<float> complete_radii(const ParticleSet& particles) {
+/// The property "radius", completed by the distances to neighbours for the particles `wanted`.
+std::vector<float> complete_radii(const ParticleSet& particles, const std::vector<bool>& wanted,
+                                  Progress* progress) {
   std::vector<float> radius(particles.size(), std::numeric_limits<float>::quiet_NaN());
   if (const Property* own = particles.find_property("radius")) radius = own->values;
   std::vector<std::vector<std::size_t>> lacking(particles.species_names.size() + 1);
@@ -68,17 +71,21 @@ std::vector<float> complete_radii(const ParticleSet& particles) {
     lacking[particles.species.empty() ? 0 : particles.species[i]].push_back(i);
   }
   for (const std::vector<std::size_t>& indices : lacking) {
-    const auto gather = [&](const std::vector<float>& values) {
-      std::vector<float> own(indices.size());
+    const auto gather = [&](const auto& values) {
+      std::decay_t<decltype(values)> own(indices.size());
       std::transform(indices.begin(), indices.end(), own.begin(),
                      [&](std::size_t i) { return values[i]; });
       return own;
     };
+    const std::vector<bool> ours =
+        wanted.empty() ? std::vector<bool>(indices.size(), true) : gather(wanted);
+    if (std::find(ours.begin(), ours.end(), true) == ours.end()) continue;
     const std::vector<float> x = gather(particles.x), y = gather(particles.y),
                              z = gather(particles.z);
-    const std::vector<float> support = smoothing_lengths_from_neighbors({x, y, z}, particles.cell);
+    const std::vector<float> support =
+        smoothing_lengths_from_neighbors({x, y, z}, particles.cell, ours, progress);
     for (std::size_t k = 0; k < indices.size(); ++k) {
-      radius[indices[k]] = static_cast<float>(support[k] / support_per_sigma);
+      if (ours[k]) radius[indices[k]] = static_cast<float>(support[k] / support_per_sigma);
     }
   }
   return radius;
@@ -104,9 +111,11 @@ bool has_sizes(const ParticleSet& particles) {
   return particles.radii_from_neighbors || particles.find_property("radius") != nullptr;
 }
 
-DefaultRadii default_radii(const ParticleSet& particles, Warnings& warnings) {
+DefaultRadii default_radii(const ParticleSet& particles, Warnings& warnings,
+                           const std::vector<bool>& wanted, Progress* progress) {
+  assert(wanted.empty() || wanted.size() == particles.size());
   if (particles.radii_from_neighbors) {
-    return {complete_radii(particles), from_neighbors};
+    return {complete_radii(particles, wanted, progress), from_neighbors};
   }
   if (const Property* radius = particles.find_property("radius")) {
     return {radius->values, "the file's radii or smoothing lengths"};

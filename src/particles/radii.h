@@ -20,16 +20,18 @@ struct DefaultRadii {
 
 /// The first of these that there is:
 /// - where has_sizes(): the property "radius", which readers derive from smoothing lengths; and
-/// with
-///   `radii_from_neighbors`, for particles without one, the standard deviation of the cubic spline
-///   that reaches the 32nd nearest of the particles of the same species that are without one too
-///   (0 where those coincide). That takes seconds a million particles;
+///   with `radii_from_neighbors`, for particles without one, the standard deviation of the cubic
+///   spline that reaches the 32nd nearest of the particles of the same species that are without one
+///   too (0 where those coincide). That takes seconds a million particles, so it is done for those
+///   `wanted` alone (all, where that is empty) and reports `progress`; the others without one get
+///   NaN;
 /// - the covalent radii of the species, where their names are elements and lengths are angstrom (or
 ///   unknown); species that are no elements get the mean of the others, with a warning, as long as
 ///   they are fewer than half of the particles;
 /// - half the mean distance of nearest neighbours, over a sample of the particles: one value for
 ///   all, and 1 where no two particles lie apart.
-DefaultRadii default_radii(const ParticleSet& particles, Warnings& warnings);
+DefaultRadii default_radii(const ParticleSet& particles, Warnings& warnings,
+                           const std::vector<bool>& wanted = {}, Progress* progress = nullptr);
 
 /// The `source` of default_radii(), without the search for neighbours that `radii_from_neighbors`
 /// asks for.

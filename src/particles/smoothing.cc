@@ -22,11 +22,13 @@ std::vector<float> smoothing_lengths_from_density(std::span<const float> mass,
 }
 
 std::vector<float> smoothing_lengths_from_neighbors(const Coordinates& coordinates,
-                                                    const std::optional<Cell>& cell) {
+                                                    const std::optional<Cell>& cell,
+                                                    const std::vector<bool>& wanted,
+                                                    Progress* progress) {
   const NeighborTree tree(coordinates, cell);
   if (tree.size() < 2) return std::vector<float>(coordinates.x.size(), 0.0F);
   const int k = static_cast<int>(std::min<std::size_t>(num_smoothing_neighbors, tree.size() - 1));
-  std::vector<float> lengths = tree.kth_distances(k);
+  std::vector<float> lengths = tree.kth_distances(k, wanted, progress);
   const float scale = static_cast<float>(std::cbrt(double(num_smoothing_neighbors) / k));
   for (float& length : lengths) length = std::isfinite(length) ? length * scale : 0.0F;
   return lengths;

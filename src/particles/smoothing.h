@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "core/report.h"
 #include "particles/neighbors.h"
 
 namespace motes {
@@ -26,8 +27,11 @@ std::vector<float> smoothing_lengths_from_density(std::span<const float> mass,
 
 /// H = the distance to the 32nd nearest neighbour. With fewer particles, the distance to the
 /// farthest of them, scaled to 32 by the cube root; 0 for a lone particle and where the position is
-/// not finite.
+/// not finite. Neighbours are looked for among all particles, but only for those `wanted` (all,
+/// where that is empty); the others get 0.
 std::vector<float> smoothing_lengths_from_neighbors(const Coordinates& coordinates,
-                                                    const std::optional<Cell>& cell);
+                                                    const std::optional<Cell>& cell,
+                                                    const std::vector<bool>& wanted = {},
+                                                    Progress* progress = nullptr);
 
 }  // namespace motes

@@ -153,9 +153,10 @@ std::vector<std::uint32_t> select_particles(const ParticleSet& particles, const 
   return index;
 }
 
-FieldSource make_field_source(const ParticleSet& particles, const Field& field,
-                              const Kernel& kernel, Warnings& warnings) {
-  if (particles.size() == 0) throw Error("the file has no particles to render");
+namespace {
+
+/// A field's particles, not yet checked; radii and weights are left open.
+FieldSource select_source(const ParticleSet& particles, const Field& field, const Kernel& kernel) {
   FieldSource source;
   source.name = field.name;
   source.kernel.support_factor = field.support_factor.value_or(kernel.support_factor);
@@ -165,12 +166,35 @@ FieldSource make_field_source(const ParticleSet& particles, const Field& field,
     throw Error(fmt::format("field '{}' selects none of the {} particles", printable(field.name),
                             particles.size()));
   }
+  return source;
+}
 
+/// The default radii, once for all the fields that give none, for their particles alone; empty
+/// where every field gives its own.
+std::vector<float> shared_default_radii(const ParticleSet& particles,
+                                        const std::vector<Field>& fields,
+                                        const std::vector<FieldSource>& sources, Warnings& warnings,
+                                        Progress* progress) {
+  std::vector<bool> wanted;
+  for (std::size_t f = 0; f < fields.size(); ++f) {
+    if (fields[f].radius) continue;
+    wanted.resize(particles.size());
+    for (const std::uint32_t i : sources[f].index) wanted[i] = true;
+  }
+  if (wanted.empty()) return {};
+  return default_radii(particles, warnings, wanted, progress).radius;
+}
+
+/// Adds radii and weights to a selected source, and leaves out the particles without a kernel.
+void complete_source(const ParticleSet& particles, const Field& field,
+                     const std::vector<float>& default_radius, FieldSource& source,
+                     Warnings& warnings) {
   // Particles with sizes of their own stand for a density: of mass, or else of number.
   const bool density = !field.radius && !field.weight && has_sizes(particles);
   const bool of_mass = density && particles.find_property("mass");
-  const std::vector<float> radius = field.radius ? values_of(particles, *field.radius, "radius")
-                                                 : default_radii(particles, warnings).radius;
+  const std::vector<float> own_radius =
+      field.radius ? values_of(particles, *field.radius, "radius") : std::vector<float>();
+  const std::vector<float>& radius = field.radius ? own_radius : default_radius;
   const NumberOrProperty unit = of_mass ? NumberOrProperty("mass") : NumberOrProperty(1.0);
   const std::vector<float> weight = values_of(particles, field.weight.value_or(unit), "weight");
   source.normalise = field.normalise.value_or(density);
@@ -200,7 +224,23 @@ FieldSource make_field_source(const ParticleSet& particles, const Field& field,
   source.radius = gather(radius, source.index);
   source.weight = gather(weight, source.index);
   source.species_color = species_color(particles, source.index);
-  return source;
+}
+
+}  // namespace
+
+std::vector<FieldSource> make_field_sources(const ParticleSet& particles,
+                                            const std::vector<Field>& fields, const Kernel& kernel,
+                                            Warnings& warnings, Progress* progress) {
+  if (particles.size() == 0) throw Error("the file has no particles to render");
+  std::vector<FieldSource> sources;
+  sources.reserve(fields.size());
+  for (const Field& field : fields) sources.push_back(select_source(particles, field, kernel));
+  const std::vector<float> default_radius =
+      shared_default_radii(particles, fields, sources, warnings, progress);
+  for (std::size_t f = 0; f < fields.size(); ++f) {
+    complete_source(particles, fields[f], default_radius, sources[f], warnings);
+  }
+  return sources;
 }
 
 std::optional<FieldMistake> find_mistake(const std::vector<Field>& fields,

@@ -156,12 +156,14 @@ void color_by_species(Scene& scene, const ParticleSet& particles);
 /// Throws Error.
 std::vector<Field> expand_fields(const Scene& scene, const ParticleSet& particles);
 
-/// The particles, radii and weights of a field. `kernel` is the scene's. Defaults: radius is the
+/// The particles, radii and weights of each field. `kernel` is the scene's. Defaults: radius is the
 /// particles' own size (has_sizes()), else the species' covalent radii, else half the mean distance
 /// of neighbours; weight 1. Where the field gives neither and the particles have sizes of their
 /// own, `normalise` is on and the weight is "mass" if there is one: a density of mass or number.
-/// Throws Error for unknown properties and where no particle is left.
-FieldSource make_field_source(const ParticleSet& particles, const Field& field,
-                              const Kernel& kernel, Warnings& warnings);
+/// Reports `progress` where neighbours have to be found. Throws Error for unknown properties and
+/// where no particle is left.
+std::vector<FieldSource> make_field_sources(const ParticleSet& particles,
+                                            const std::vector<Field>& fields, const Kernel& kernel,
+                                            Warnings& warnings, Progress* progress = nullptr);
 
 }  // namespace motes

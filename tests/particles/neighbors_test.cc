@@ -105,6 +105,18 @@ TEST(NeighborTree, LeavesOutPositionsThatAreNotFinite) {
   EXPECT_EQ(tree.kth_distances(1), std::vector<float>({3, infinity, 3, infinity}));
 }
 
+TEST(NeighborTree, AnswersForTheWantedAloneAmongAll) {
+  const Cloud cloud = random_cloud(777, 10, 3);
+  const NeighborTree tree(cloud.coordinates(), {});
+  const std::vector<float> all = tree.kth_distances(5);
+  std::vector<bool> wanted(777);
+  for (std::size_t i = 0; i < wanted.size(); i += 3) wanted[i] = true;
+  const std::vector<float> some = tree.kth_distances(5, wanted);
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    EXPECT_EQ(some[i], wanted[i] ? all[i] : infinity) << i;
+  }
+}
+
 TEST(NeighborTree, SurvivesManyCoincidentParticles) {
   const Cloud cloud{std::vector<float>(50000, 1.0F), std::vector<float>(50000, 2.0F),
                     std::vector<float>(50000, 3.0F)};

@@ -37,6 +37,12 @@ std::string message_of(F&& function) {
   return "";
 }
 
+/// The source of one field alone.
+FieldSource make_field_source(const ParticleSet& particles, const Field& field,
+                              const Kernel& kernel, Warnings& warnings) {
+  return make_field_sources(particles, {field}, kernel, warnings).front();
+}
+
 TEST(SelectParticles, AllThatIsGivenMustHold) {
   const ParticleSet particles = silica();
   EXPECT_THAT(select_particles(particles, {}), ElementsAre(0, 1, 2, 3));
@@ -66,7 +72,7 @@ TEST(SelectParticles, NamesWhatThereIs) {
               HasSubstr("no species"));
 }
 
-TEST(MakeFieldSource, DefaultsToCovalentRadiiAndWeightOne) {
+TEST(MakeFieldSources, DefaultsToCovalentRadiiAndWeightOne) {
   Warnings warnings;
   const FieldSource source = make_field_source(silica(), {}, {}, warnings);
   EXPECT_THAT(source.index, ElementsAre(0, 1, 2, 3));
@@ -76,7 +82,7 @@ TEST(MakeFieldSource, DefaultsToCovalentRadiiAndWeightOne) {
   EXPECT_THAT(warnings.lines(), testing::IsEmpty());
 }
 
-TEST(MakeFieldSource, TakesNumbersAndProperties) {
+TEST(MakeFieldSources, TakesNumbersAndProperties) {
   Warnings warnings;
   Field field;
   field.select.species = {"O"};
@@ -92,7 +98,7 @@ TEST(MakeFieldSource, TakesNumbersAndProperties) {
   EXPECT_EQ(source.kernel, (Kernel{3, 7}));
 }
 
-TEST(MakeFieldSource, TakesADensityWhereParticlesHaveASize) {
+TEST(MakeFieldSources, TakesADensityWhereParticlesHaveASize) {
   ParticleSet particles = silica();
   particles.properties = {{"h", {2, 2, 2, 2}}, {"radius", {1, 1, 1, 2}}, {"mass", {3, 4, 5, 6}}};
   Warnings warnings;
@@ -111,7 +117,7 @@ TEST(MakeFieldSource, TakesADensityWhereParticlesHaveASize) {
   EXPECT_FALSE(source.normalise);
 }
 
-TEST(MakeFieldSource, LeavesOutWhatHasNoKernelAndCounts) {
+TEST(MakeFieldSources, LeavesOutWhatHasNoKernelAndCounts) {
   ParticleSet particles = silica();
   Warnings warnings;
   Field field;
@@ -134,7 +140,7 @@ TEST(MakeFieldSource, LeavesOutWhatHasNoKernelAndCounts) {
                           "field 'f': 1 of 4 particles left out: their weights are not finite"));
 }
 
-TEST(MakeFieldSource, RefusesFieldsWithoutParticles) {
+TEST(MakeFieldSources, RefusesFieldsWithoutParticles) {
   Warnings warnings;
   Field field;
   field.name = "f";
@@ -147,6 +153,53 @@ TEST(MakeFieldSource, RefusesFieldsWithoutParticles) {
   field.radius = "charg";
   EXPECT_EQ(message_of([&] { make_field_source(silica(), field, {}, warnings); }),
             "radius: unknown property 'charg'; did you mean 'charge'?");
+}
+
+/// Counts how often work begins.
+class CountedWork : public Progress {
+ public:
+  void update(std::string_view activity, double fraction) override {
+    EXPECT_EQ(activity, "finding neighbours");
+    EXPECT_LE(fraction, 1);
+    begun += !(fraction > last_fraction);
+    last_fraction = fraction;
+  }
+  int begun = 0;
+  double last_fraction = 1;
+};
+
+TEST(MakeFieldSources, FindsNeighboursOnceForAllFields) {
+  ParticleSet particles;
+  for (int i = 0; i < 100; ++i) {
+    particles.x.push_back(static_cast<float>(i));
+    particles.species.push_back(i % 2 == 0 ? 0 : 1);
+  }
+  particles.y = particles.z = std::vector<float>(100);
+  particles.species_names = {"dark", "stars"};
+  particles.radii_from_neighbors = true;
+  Warnings warnings;
+  const std::vector<float> alone = make_field_source(particles, {}, {}, warnings).radius;
+
+  std::vector<Field> fields(3);
+  fields[0].select = {{"dark"}, {{0, 49}}, ""};
+  fields[1].select = {{"dark"}, {{30, 69}}, ""};
+  fields[2].select = {{"stars"}, {}, ""};
+  fields[2].radius = 1.0;
+  CountedWork work;
+  const std::vector<FieldSource> sources =
+      make_field_sources(particles, fields, {}, warnings, &work);
+  EXPECT_EQ(work.begun, 1) << "the stars have a radius";
+  EXPECT_EQ(work.last_fraction, 1);
+  ASSERT_EQ(sources.size(), 3u);
+  for (int f : {0, 1}) {
+    const FieldSource& source = sources[static_cast<std::size_t>(f)];
+    ASSERT_GT(source.index.size(), 0u);
+    // Neighbours that no field takes count all the same.
+    for (std::size_t i = 0; i < source.index.size(); ++i) {
+      EXPECT_EQ(source.radius_of(i), alone[source.index[i]]);
+    }
+  }
+  EXPECT_EQ(sources[2].radius, std::vector<float>{1});
 }
 
 TEST(ExpandFields, GivesEveryFieldANameOfItsOwn) {
