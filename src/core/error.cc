@@ -76,25 +76,38 @@ bool is_part(std::string_view part, std::string_view whole) {
   return false;
 }
 
+/// Of the candidates that `counts` allows, the one that takes the fewest edits.
+/// `counts(known, distance)` gets it in lower case.
+template <class Predicate>
+std::string best_word(const std::string& wanted, const std::vector<std::string>& candidates,
+                      Predicate&& counts) {
+  std::string best;
+  std::size_t best_distance = std::string::npos;
+  for (const std::string& candidate : candidates) {
+    const std::string known = in_lower_case(candidate);
+    const std::size_t distance = edit_distance(wanted, known);
+    if (distance >= best_distance || !counts(known, distance)) continue;
+    best_distance = distance;
+    best = candidate;
+  }
+  return best;
+}
+
 }  // namespace
 
 std::string nearest_word(std::string_view word, const std::vector<std::string>& candidates) {
   const std::string wanted = in_lower_case(word);
   // A single letter that is changed leaves nothing of the word.
   const std::size_t far = wanted.size() < 2 ? 0 : std::max<std::size_t>(1, wanted.size() / 3);
-  std::string best;
-  std::size_t best_distance = std::string::npos;
-  for (const std::string& candidate : candidates) {
-    const std::string known = in_lower_case(candidate);
-    const std::size_t distance = edit_distance(wanted, known);
+  return best_word(wanted, candidates, [&](const std::string& known, std::size_t distance) {
     const bool near = distance <= far && distance < known.size();
-    if (!near && !is_part(wanted, known) && !is_part(known, wanted)) continue;
-    if (distance < best_distance) {
-      best_distance = distance;
-      best = candidate;
-    }
-  }
-  return best;
+    return near || is_part(wanted, known) || is_part(known, wanted);
+  });
+}
+
+std::string closest_word(std::string_view word, const std::vector<std::string>& candidates) {
+  return best_word(in_lower_case(word), candidates,
+                   [](const std::string&, std::size_t) { return true; });
 }
 
 Error unknown_name(std::string_view kind, std::string_view name,

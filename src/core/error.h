@@ -28,6 +28,10 @@ std::string printable(std::string_view text, std::size_t max_length = 60);
 /// part of the other, whatever the case; "" if none is.
 std::string nearest_word(std::string_view word, const std::vector<std::string>& candidates);
 
+/// The member of `candidates` that takes the fewest edits to make of `word`, whatever the case; ""
+/// if there are none.
+std::string closest_word(std::string_view word, const std::vector<std::string>& candidates);
+
 /// "unknown KIND 'NAME'; did you mean 'NEAREST'?", or, where none is near, what there is.
 Error unknown_name(std::string_view kind, std::string_view name,
                    const std::vector<std::string>& candidates);

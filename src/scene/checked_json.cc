@@ -60,7 +60,11 @@ void CheckedJson::check_keys(const std::vector<std::string>& known) const {
   if (!value_.is_object()) expected("an object");
   for (const auto& item : value_.items()) {
     if (std::find(known.begin(), known.end(), item.key()) == known.end()) {
-      fail(unknown_name("key", item.key(), known).what());
+      std::string what = unknown_name("key", item.key(), known).what();
+      if (nearest_word(item.key(), known).empty()) {
+        what += fmt::format("; the nearest known key is '{}'", closest_word(item.key(), known));
+      }
+      fail(what);
     }
   }
 }

@@ -46,6 +46,12 @@ TEST(NearestWord, SuggestsNothingThatIsOnlyAsShort) {
   EXPECT_EQ(nearest_word("", {"x"}), "");
 }
 
+TEST(ClosestWord, IsThereHoweverFar) {
+  EXPECT_EQ(closest_word("WIDTH", {"radius", "weight", "select"}), "weight");
+  EXPECT_EQ(closest_word("q", {"version", "data", "name"}), "data");
+  EXPECT_EQ(closest_word("q", {}), "");
+}
+
 TEST(UnknownName, NamesTheNearestOrAll) {
   EXPECT_STREQ(unknown_name("key", "raduis", {"radius", "weight"}).what(),
                "unknown key 'raduis'; did you mean 'radius'?");

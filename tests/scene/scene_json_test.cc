@@ -114,6 +114,9 @@ TEST(ParseScene, NamesTheNearestKey) {
             "dir/s.json: fields[1]: unknown key 'raduis'; did you mean 'radius'?");
   EXPECT_THAT(message_of(with_body(R"("render": {"lighting": {"speculr": 1}})")),
               HasSubstr("render.lighting: unknown key 'speculr'; did you mean 'specular'?"));
+  EXPECT_EQ(message_of(with_body(R"("fields": [{"select": {"colour": 1}}])")),
+            "dir/s.json: fields[0].select: unknown key 'colour'; there are: species, index, "
+            "expression; the nearest known key is 'index'");
 }
 
 TEST(ParseScene, NamesTheLineOfBrokenJson) {
