@@ -10,7 +10,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cerrno>
+#include <cmath>
 #include <system_error>
 
 #include "core/error.h"
@@ -137,7 +139,19 @@ std::string read_head(const std::filesystem::path& path, std::size_t size) {
   return head;
 }
 
-std::string read_decompressed(const std::filesystem::path& path, const ReadOptions& options) {
+std::uint64_t half_of_memory() {
+  const long num_pages = ::sysconf(_SC_PHYS_PAGES), page_bytes = ::sysconf(_SC_PAGE_SIZE);
+  assert(num_pages > 0 && page_bytes > 0);
+  return static_cast<std::uint64_t>(num_pages) * static_cast<std::uint64_t>(page_bytes) / 2;
+}
+
+std::string too_large(std::string_view what, std::uint64_t most_bytes) {
+  return fmt::format("{} of more than {:.3g} GiB; expected less, for it must fit into memory", what,
+                     std::ldexp(static_cast<double>(most_bytes), -30));
+}
+
+std::string read_decompressed(const std::filesystem::path& path, const ReadOptions& options,
+                              std::uint64_t most_bytes) {
   ByteStream stream(path);
   const std::string activity = reading_activity(path);
   const std::size_t block_bytes = std::size_t{256} << 10;
@@ -147,6 +161,7 @@ std::string read_decompressed(const std::filesystem::path& path, const ReadOptio
     content.resize(size + block_bytes);
     n = stream.read(content.data() + size, block_bytes);
     content.resize(size + n);
+    if (content.size() > most_bytes) throw Error(path, too_large("content", most_bytes));
     if (options.progress != nullptr) options.progress->update(activity, stream.fraction());
   }
   return content;

@@ -66,8 +66,17 @@ inline constexpr std::size_t head_bytes = std::size_t{64} << 10;
 /// The first bytes of the (decompressed) content, at most `size`.
 std::string read_head(const std::filesystem::path& path, std::size_t size = head_bytes);
 
+/// Half of the machine's memory, in bytes: the most of a file's content that is held at once, for a
+/// few compressed bytes can stand for any number.
+std::uint64_t half_of_memory();
+
+/// The message that `what` has more than `most_bytes`, too many for memory.
+std::string too_large(std::string_view what, std::uint64_t most_bytes);
+
 /// The whole (decompressed) content, with progress: for formats that are small, or read at once.
-std::string read_decompressed(const std::filesystem::path& path, const ReadOptions& options);
+/// Throws Error where it has more than `most_bytes`.
+std::string read_decompressed(const std::filesystem::path& path, const ReadOptions& options,
+                              std::uint64_t most_bytes = half_of_memory());
 
 /// "reading NAME", the activity that readers report their progress as.
 std::string reading_activity(const std::filesystem::path& path);

@@ -26,7 +26,8 @@ Hdf5Handle open_file(const std::filesystem::path& path, const ReadOptions& optio
   H5Pset_file_locking(access.id(), false, true);  // a lock needs write access on some file systems
   std::string name = path.string();
   if (ByteStream(path).compressed()) {
-    std::string content = read_decompressed(path, options);
+    // (the library makes copies of it)
+    std::string content = read_decompressed(path, options, half_of_memory() / 2);
     H5Pset_fapl_core(access.id(), std::size_t{1} << 20, false);
     H5Pset_file_image(access.id(), content.data(), content.size());
     name += "/content";  // the library wants a name that no file has

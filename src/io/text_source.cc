@@ -8,8 +8,12 @@
 
 namespace motes {
 
-TextSource::TextSource(const std::filesystem::path& path, const ReadOptions& options)
-    : path_(path), options_(options), stream_(std::make_unique<ByteStream>(path)) {
+TextSource::TextSource(const std::filesystem::path& path, const ReadOptions& options,
+                       std::uint64_t most_bytes)
+    : path_(path),
+      options_(options),
+      most_bytes_(most_bytes),
+      stream_(std::make_unique<ByteStream>(path)) {
   if (!stream_->compressed()) {
     stream_.reset();
     mapped_ = std::make_unique<MappedFile>(path);
@@ -65,7 +69,11 @@ void TextSource::load_more() {
   window_.erase(0, position_.offset - window_offset_);
   window_offset_ = position_.offset;
   const std::size_t old_size = window_.size();
-  const std::size_t block = std::max(old_size, std::size_t{1} << 20);
+  if (old_size >= most_bytes_) {
+    throw Error(path_, position_.line, too_large("a frame", most_bytes_));
+  }
+  const std::size_t block =
+      std::min<std::uint64_t>(std::max(old_size, std::size_t{1} << 20), most_bytes_ - old_size);
   window_.resize(old_size + block);
   const std::size_t n = stream_->read(window_.data() + old_size, block);
   window_.resize(old_size + n);

@@ -21,8 +21,9 @@ class TextSource {
     std::uint64_t line = 1;
   };
 
-  /// What `options` points to must outlive the source.
-  TextSource(const std::filesystem::path& path, const ReadOptions& options);
+  /// What `options` points to must outlive the source. A window has at most `most_bytes`.
+  TextSource(const std::filesystem::path& path, const ReadOptions& options,
+             std::uint64_t most_bytes = half_of_memory());
 
   void seek(Position position);
   Position position() const { return position_; }
@@ -32,8 +33,8 @@ class TextSource {
   std::string_view loaded() const;
   /// Whether loaded() reaches the end of the file.
   bool complete() const { return mapped_ != nullptr || stream_ended_; }
-  /// Loads at least as much again. Throws Error where a compressed file has a line of more than
-  /// 64 MiB.
+  /// Loads as much again, at least 1 MiB, or what the window may still take. Throws Error where a
+  /// compressed file has a line of more than 64 MiB, or the window is full.
   void load_more();
 
  private:
@@ -42,6 +43,7 @@ class TextSource {
 
   std::filesystem::path path_;
   ReadOptions options_;
+  std::uint64_t most_bytes_;
   Position position_;
   std::unique_ptr<MappedFile> mapped_;
   // A compressed file: window_ holds the content from window_offset_ on.

@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "core/error.h"
+#include "io/text_source.h"
 #include "support/compress.h"
 #include "support/temporary_file.h"
 
@@ -81,6 +82,36 @@ TEST(ByteStream, OfALineWithoutEndIsNotReadIntoMemory) {
                            compress("1\n\nH 0 0 0" + std::string(70 << 20, ' '), "zstd"));
   EXPECT_THAT(error_of([&] { open_trajectory(file.path(), {})->read_frame(0); }),
               HasSubstr("a.xyz.zst:3: a line of more than 64 MiB; expected text"));
+}
+
+TEST(ByteStream, OfMoreThanTheMemoryAllowsIsNotReadWhole) {
+  const std::string content(3 << 20, '\n');
+  const TemporaryFile file("a.csv.zst", compress(content, "zstd"));
+  EXPECT_EQ(read_decompressed(file.path(), {}, content.size()), content);
+  EXPECT_THAT(error_of([&] { read_decompressed(file.path(), {}, content.size() - 1); }),
+              HasSubstr("a.csv.zst: content of more than 0.00293 GiB; expected less"));
+  EXPECT_GT(half_of_memory(), std::uint64_t{128} << 20);
+}
+
+TEST(TextSource, HoldsNoMoreThanTheMemoryAllows) {
+  const std::string content = "1\n" + std::string(4 << 20, '\n');
+  const TemporaryFile file("a.xyz.zst", compress(content, "zstd"));
+  TextSource whole(file.path(), {}, content.size() + 1);
+  while (!whole.complete()) whole.load_more();
+  EXPECT_EQ(whole.loaded(), content);
+
+  TextSource source(file.path(), {}, 3 << 20);
+  source.load_more();
+  source.seek({2, 2});
+  EXPECT_THAT(error_of([&] {
+                while (!source.complete()) source.load_more();
+              }),
+              HasSubstr("a.xyz.zst:2: a frame of more than 0.00293 GiB"));
+  EXPECT_EQ(source.loaded().size(), std::size_t{3} << 20);
+  // What is left behind makes room.
+  source.seek({2 << 20, 100});
+  while (!source.complete()) source.load_more();
+  EXPECT_EQ(source.loaded().size(), content.size() - (2 << 20));
 }
 
 }  // namespace
