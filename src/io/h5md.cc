@@ -14,6 +14,7 @@
 #include "io/bytes.h"
 #include "io/hdf5_columns.h"
 #include "io/text.h"
+#include "io/type_names.h"
 #include "particles/elements.h"
 
 namespace motes {
@@ -172,9 +173,13 @@ class H5mdTrajectory : public Trajectory {
  private:
   void read_positions(std::uint64_t frame, ParticleSet& particles) const;
   void read_cell_and_time(std::uint64_t frame, ParticleSet& particles) const;
-  void read_species(const ParticleGroup& group, std::uint64_t frame, ParticleSet& particles) const;
+  void read_all_species(std::uint64_t frame, ParticleSet& particles) const;
+  std::set<std::int64_t> read_species(const ParticleGroup& group, std::uint64_t frame,
+                                      ParticleSet& particles) const;
+  std::set<std::int64_t> distinct_species(const ParticleGroup& group,
+                                          const std::vector<double>& numbers) const;
   std::map<std::int64_t, std::string> species_names(const ParticleGroup& group,
-                                                    const std::vector<double>& numbers) const;
+                                                    const std::set<std::int64_t>& distinct) const;
   void read_ids(std::uint64_t frame, ParticleSet& particles) const;
   void read_properties(std::uint64_t frame, ParticleSet& particles) const;
 
@@ -207,7 +212,7 @@ ParticleSet H5mdTrajectory::read_frame(std::size_t frame) {
   ParticleSet particles;
   read_positions(frame, particles);
   read_cell_and_time(frame, particles);
-  for (const ParticleGroup& group : groups_) read_species(group, frame, particles);
+  read_all_species(frame, particles);
   read_ids(frame, particles);
   read_properties(frame, particles);
   remove_padding(particles);
@@ -275,8 +280,8 @@ void H5mdTrajectory::read_cell_and_time(std::uint64_t frame, ParticleSet& partic
   if (dot(cell.vectors[0], cross(cell.vectors[1], cell.vectors[2])) != 0) particles.cell = cell;
 }
 
-std::map<std::int64_t, std::string> H5mdTrajectory::species_names(
-    const ParticleGroup& group, const std::vector<double>& numbers) const {
+std::set<std::int64_t> H5mdTrajectory::distinct_species(const ParticleGroup& group,
+                                                        const std::vector<double>& numbers) const {
   std::set<std::int64_t> distinct;
   for (const double n : numbers) {
     if (!(std::abs(n) < 65536)) {
@@ -287,6 +292,11 @@ std::map<std::int64_t, std::string> H5mdTrajectory::species_names(
       file_.fail(group.path + "/species", "has more than 4096 distinct numbers; expected species");
     }
   }
+  return distinct;
+}
+
+std::map<std::int64_t, std::string> H5mdTrajectory::species_names(
+    const ParticleGroup& group, const std::set<std::int64_t>& distinct) const {
   const std::string dataset = find_element(file_, group.path + "/species")->dataset;
   std::map<std::int64_t, std::string> names = file_.enumeration(dataset);
   const std::vector<std::string> listed = file_.texts(dataset, "names");
@@ -299,22 +309,25 @@ std::map<std::int64_t, std::string> H5mdTrajectory::species_names(
                               std::all_of(distinct.begin(), distinct.end(), [](std::int64_t n) {
                                 return element_by_number(static_cast<int>(n)) != nullptr;
                               });
-  if (atomic_numbers && options_.warnings != nullptr) {
-    options_.warnings->add("numbers of species are taken for atomic numbers");
-  }
+  bool guessed = false;
   for (const std::int64_t n : distinct) {
     if (const auto it = options_.types.find(static_cast<int>(n)); it != options_.types.end()) {
       names[n] = it->second;
     } else if (!names.contains(n)) {
+      guessed = atomic_numbers;
       names[n] = atomic_numbers ? std::string(element_by_number(static_cast<int>(n))->symbol)
                                 : std::to_string(n);
     }
   }
+  if (guessed && options_.warnings != nullptr) {
+    options_.warnings->add("numbers of species are taken for atomic numbers");
+  }
   return names;
 }
 
-void H5mdTrajectory::read_species(const ParticleGroup& group, std::uint64_t frame,
-                                  ParticleSet& particles) const {
+/// Appends the species of the group's particles, and gives their numbers in the file.
+std::set<std::int64_t> H5mdTrajectory::read_species(const ParticleGroup& group, std::uint64_t frame,
+                                                    ParticleSet& particles) const {
   const auto numbers = read_if_there<double>(file_, group, "species", frame);
   if (!numbers) {
     // One group without species says nothing about its particles; several differ by group.
@@ -322,17 +335,27 @@ void H5mdTrajectory::read_species(const ParticleGroup& group, std::uint64_t fram
       particles.species.resize(particles.species.size() + group.size(),
                                particles.species_index(group.name));
     }
-    return;
+    return {};
   }
   if (numbers->size() != group.size()) {
     file_.fail(group.path + "/species",
                fmt::format("has {} values a frame; expected {}", numbers->size(), group.size()));
   }
+  const std::set<std::int64_t> distinct = distinct_species(group, *numbers);
   std::map<std::int64_t, std::uint16_t> indices;
-  for (const auto& [number, name] : species_names(group, *numbers)) {
+  for (const auto& [number, name] : species_names(group, distinct)) {
     indices[number] = particles.species_index(name);
   }
   for (const double n : *numbers) particles.species.push_back(indices.at(std::llround(n)));
+  return distinct;
+}
+
+void H5mdTrajectory::read_all_species(std::uint64_t frame, ParticleSet& particles) const {
+  std::set<std::int64_t> numbers;
+  for (const ParticleGroup& group : groups_) numbers.merge(read_species(group, frame, particles));
+  std::vector<std::string> types;
+  for (const std::int64_t number : numbers) types.push_back(std::to_string(number));
+  warn_of_absent_types(file_.path(), types, options_);
 }
 
 void H5mdTrajectory::read_ids(std::uint64_t frame, ParticleSet& particles) const {

@@ -53,7 +53,8 @@ std::vector<std::size_t> sorted_types(const std::vector<std::string>& types) {
   return order;
 }
 
-/// The user may have named a type that is not there, by a slip.
+}  // namespace
+
 void warn_of_absent_types(const std::filesystem::path& file, const std::vector<std::string>& types,
                           const ReadOptions& options) {
   if (options.warnings == nullptr) return;
@@ -66,13 +67,13 @@ void warn_of_absent_types(const std::filesystem::path& file, const std::vector<s
       return to_integer(type) == n;
     });
     if (found) continue;
-    options.warnings->add(Error(file, fmt::format("has no type {} to be named {}; there are: {}",
-                                                  number, printable(name), printable(present, 200)))
-                              .what());
+    options.warnings->add(
+        Error(file,
+              fmt::format("has no type {} to be named {}; there are: {}", number, printable(name),
+                          present.empty() ? "none" : printable(present, 200)))
+            .what());
   }
 }
-
-}  // namespace
 
 void name_types(const std::filesystem::path& file, const Column& types, const TypeHints& hints,
                 const ReadOptions& options, ParticleSet& particles) {

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "io/reader.h"
 #include "io/table.h"
@@ -21,5 +22,10 @@ struct TypeHints {
 /// the mass says, or the mass says none; the element of its mass, with a warning; its own number.
 void name_types(const std::filesystem::path& file, const Column& types, const TypeHints& hints,
                 const ReadOptions& options, ParticleSet& particles);
+
+/// Warns of each type that options.types names but that is not among the file's `types`: the user
+/// may have made a slip. Part of name_types().
+void warn_of_absent_types(const std::filesystem::path& file, const std::vector<std::string>& types,
+                          const ReadOptions& options);
 
 }  // namespace motes

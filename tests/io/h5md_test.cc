@@ -125,6 +125,37 @@ TEST(H5md, NamesSpeciesByElementOrByLabel) {
   EXPECT_EQ(named.species_names[named.species[0]], "O");
 }
 
+TEST(H5md, WarnsOfNamesForTypesThatAreNotThere) {
+  const TemporaryFile file("a.h5md");
+  const auto warnings_of = [&](const std::map<int, std::string>& types) {
+    Warnings warnings;
+    ReadOptions options;
+    options.warnings = &warnings;
+    options.types = types;
+    read(file.path(), 0, options);
+    return warnings.lines();
+  };
+  {
+    Hdf5Writer writer(file.path());
+    write_trajectory(writer);
+  }
+  EXPECT_THAT(warnings_of({}), ElementsAre());
+  EXPECT_THAT(warnings_of({{1, "Si"}}),
+              ElementsAre(HasSubstr("has no type 1 to be named Si; there are: none")));
+  {
+    Hdf5Writer writer(file.path());
+    write_trajectory(writer);
+    writer.dataset("particles/all/species", {2}, {11, 1}, H5T_STD_I32LE);
+    writer.dataset("particles/wall/position/value", {2, 1, 3}, {7, 7, 7, 8, 8, 8});
+    writer.dataset("particles/wall/species", {1}, {2}, H5T_STD_I32LE);
+  }
+  EXPECT_THAT(warnings_of({{1, "Si"}, {2, "O"}, {11, "H"}}), ElementsAre());
+  EXPECT_THAT(warnings_of({{1, "Si"}, {2, "O"}}),
+              ElementsAre("numbers of species are taken for atomic numbers"));
+  EXPECT_THAT(warnings_of({{1, "Si"}, {2, "O"}, {3, "N"}, {11, "H"}}),
+              ElementsAre(HasSubstr("a.h5md: has no type 3 to be named N; there are: 1, 2, 11")));
+}
+
 TEST(H5md, FindsElementsStoredAtOtherStepsByTheirStep) {
   const TemporaryFile file("a.h5md");
   {
