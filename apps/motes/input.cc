@@ -3,11 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 
 #include "core/error.h"
 #include "io/reader.h"
-#include "scene/field_mistake.h"
 
 namespace motes {
 
@@ -33,22 +33,16 @@ Input read_particles(const Scene& scene, Console& console) {
   return input;
 }
 
-void check_fields(const Scene& scene, const std::filesystem::path& path,
-                  const SceneChanges& changes, const ParticleSet& particles) {
-  const auto mistake = find_mistake(scene.fields, particles);
-  if (!mistake) return;
-  const std::string option = "--" + mistake->key;
-  if (changes.contains(option)) throw Error(fmt::format("{}: {}", option, mistake->message));
-  throw Error(path,
-              fmt::format("fields[{}].{}: {}", mistake->field, mistake->key, mistake->message));
-}
-
-void fail_with_camera(const std::string& message, const std::filesystem::path& path,
-                      const SceneChanges& changes) {
-  for (const std::string key : {"up", "eye", "target"}) {
-    const std::string option = "--" + key, place = "camera." + key + ": ";
-    if (message.starts_with(place) && changes.contains(option)) {
-      throw Error(fmt::format("{}: {}", option, message.substr(place.size())));
+void fail_in_place(const std::string& message, const std::filesystem::path& path,
+                   const SceneChanges& changes) {
+  // The option of "fields[0].radius" is --radius, that of "render.step_size" --step-size.
+  const auto end = message.find_first_not_of("abcdefghijklmnopqrstuvwxyz_.[]0123456789");
+  if (end != message.npos && message.compare(end, 2, ": ") == 0) {
+    const std::string key = message.substr(0, end);
+    std::string option = "--" + key.substr(key.rfind('.') + 1);
+    std::replace(option.begin(), option.end(), '_', '-');
+    if (changes.contains(option)) {
+      throw Error(fmt::format("{}: {}", option, message.substr(end + 2)));
     }
   }
   throw Error(path, message);

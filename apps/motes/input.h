@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 
+#include "core/error.h"
 #include "motes/console.h"
 #include "motes/scene_options.h"
 #include "particles/particle_set.h"
@@ -24,14 +25,20 @@ struct Input {
 /// Reads the scene's frame of its data.
 Input read_particles(const Scene& scene, Console& console);
 
-/// Throws Error, with the option or the key of the scene file at `path`, where the fields name what
-/// the particles do not have.
-void check_fields(const Scene& scene, const std::filesystem::path& path,
-                  const SceneChanges& changes, const ParticleSet& particles);
+/// Throws `message`, a mistake that shows only in the data and knows at most the scene's key, as in
+/// "camera.up: what". Names the option that gave the key, or else the file at `path`.
+[[noreturn]] void fail_in_place(const std::string& message, const std::filesystem::path& path,
+                                const SceneChanges& changes);
 
-/// Throws what `message` says of a key of the camera: "camera.up: what". Names the option that gave
-/// the camera, or the scene file at `path`.
-[[noreturn]] void fail_with_camera(const std::string& message, const std::filesystem::path& path,
-                                   const SceneChanges& changes);
+/// Does `work` with the scene or the particles of the file at `path`; what it throws gets its place
+/// by fail_in_place().
+template <class Work>
+auto with_place(const std::filesystem::path& path, const SceneChanges& changes, Work&& work) {
+  try {
+    return work();
+  } catch (const Error& error) {
+    fail_in_place(error.what(), path, changes);
+  }
+}
 
 }  // namespace motes

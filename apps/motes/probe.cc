@@ -74,9 +74,10 @@ void run(const Options& options) {
   Scene scene = open_scene(options.path);
   options.changes.apply(scene);
   const Input input = read_particles(scene, console);
-  check_fields(scene, options.path, options.changes, input.particles);
-  const auto fields = make_field_sources(input.particles, expand_fields(scene, input.particles),
-                                         scene.kernel, console.warnings(), &console);
+  const auto fields = with_place(options.path, options.changes, [&] {
+    return make_field_sources(input.particles, expand_fields(scene, input.particles), scene.kernel,
+                              console.warnings(), &console);
+  });
   console.print_warnings();
   const KernelSet kernels = build_kernel_set(input.particles, fields);
   const std::string csv = to_csv(points, fields, probe(kernels, points));

@@ -17,6 +17,7 @@
 #include "motes/commands.h"
 #include "motes/input.h"
 #include "motes/scene_options.h"
+#include "render/render_tile.h"
 #include "render/renderer.h"
 #include "render/resolve.h"
 
@@ -110,7 +111,9 @@ void run(const Options& options) {
     limit.emplace(tbb::global_control::max_allowed_parallelism,
                   static_cast<std::size_t>(options.threads));
   }
-  // Told at once, not after long work: an output that cannot be written.
+  // Told at once, not after long work: a MOTES_TARGET that is not to be had, an output that cannot
+  // be written.
+  instruction_set();
   const ImageFormat format = image_format(options.output);
   if (!options.stats.empty() && std::filesystem::weakly_canonical(options.stats) ==
                                     std::filesystem::weakly_canonical(options.output)) {
@@ -134,26 +137,25 @@ void run(const Options& options) {
     statistics.read_ms = input.read_ms;
     bounds = input.particles.bounds();
     length_unit = input.particles.length_unit;
-    check_fields(scene, options.path, options.changes, input.particles);
-    color_by_species(scene, input.particles);
-    const auto fields = expand_fields(scene, input.particles);
-    const auto sources =
-        make_field_sources(input.particles, fields, scene.kernel, console.warnings(), &console);
-    console.print_warnings();
-    console.update("building the tree", 0);
-    renderer.emplace(input.particles, sources);
-    try {
+    with_place(options.path, options.changes, [&] {
+      color_by_species(scene, input.particles);
+      const auto fields = expand_fields(scene, input.particles);
+      const auto sources =
+          make_field_sources(input.particles, fields, scene.kernel, console.warnings(), &console);
+      console.print_warnings();
+      console.update("building the tree", 0);
+      renderer.emplace(input.particles, sources);
       resolved = resolve(scene, input.particles, fields, sources, renderer->kernels(), &console);
-    } catch (const Error& error) {
-      fail_with_camera(error.what(), options.path, options.changes);
-    }
+    });
   }
   statistics.build_ms = renderer->build_ms();
   statistics.particles = renderer->kernels().size();
   statistics.particle_bytes = renderer->kernels().particle_bytes();
   statistics.tree_bytes = renderer->kernels().bvh.bytes();
 
-  const Framebuffer image = render_frames(*renderer, resolved, options, console, statistics);
+  const Framebuffer image = with_place(options.path, options.changes, [&] {
+    return render_frames(*renderer, resolved, options, console, statistics);
+  });
   warn_of_empty_picture(image, bounds, length_unit, console);
   write_image(output, format, image, scene.render.termination_opacity, scene.render.background);
   output.commit();

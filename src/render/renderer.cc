@@ -59,14 +59,14 @@ void check_step(const KernelSet& kernels, const ResolvedScene& scene) {
   const double samples = length(kernels.box().diagonal()) / scene.step_size;
   if (samples > max_samples) {
     throw Error(fmt::format(
-        "step_size {:g} takes {:.3g} samples through the volume, expected a step of {:g} or more",
+        "render.step_size: {:g} takes {:.3g} samples through the volume; expected {:g} or more",
         scene.step_size, samples, samples * scene.step_size / max_samples));
   }
   const double farthest = length(kernels.box().center() - scene.camera.eye);
   constexpr double max_index = 4503599627370496.0;  // 2^52: depths of planes are still exact
   if (farthest / scene.step_size > max_index) {
     throw Error(
-        fmt::format("the eye is {:g} away from the data, expected at most {:g} steps of {:g}",
+        fmt::format("camera.eye: is {:g} away from the data; expected at most {:g} steps of {:g}",
                     farthest, max_index, scene.step_size));
   }
 }

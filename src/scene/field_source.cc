@@ -10,7 +10,6 @@
 #include "particles/elements.h"
 #include "particles/radii.h"
 #include "particles/selection.h"
-#include "scene/field_mistake.h"
 #include "scene/scene.h"
 
 namespace motes {
@@ -243,30 +242,6 @@ std::vector<FieldSource> make_field_sources(const ParticleSet& particles,
   return sources;
 }
 
-std::optional<FieldMistake> find_mistake(const std::vector<Field>& fields,
-                                         const ParticleSet& particles) {
-  std::size_t k = 0;
-  const char* key = "";
-  try {
-    for (; k < fields.size(); ++k) {
-      const Selection& select = fields[k].select;
-      key = "select.species";
-      if (!select.species.empty()) find_species(particles, select.species);
-      key = "select.expression";
-      if (!select.expression.empty()) check_expression(select.expression, particles);
-      for (const auto& [name, value] :
-           {std::pair{"radius", &fields[k].radius}, std::pair{"weight", &fields[k].weight}}) {
-        key = name;
-        const auto* property = *value ? std::get_if<std::string>(&**value) : nullptr;
-        if (property != nullptr) property_named(particles, *property);
-      }
-    }
-  } catch (const Error& error) {
-    return FieldMistake{k, key, error.what()};
-  }
-  return std::nullopt;
-}
-
 void color_by_species(Scene& scene, const ParticleSet& particles) {
   if (has_sizes(particles)) return;
   std::vector<bool> present(particles.species_names.size());
@@ -287,6 +262,29 @@ void color_by_species(Scene& scene, const ParticleSet& particles) {
 
 namespace {
 
+/// Throws Error "fields[1].radius: what" for names of species and properties, also in expressions,
+/// that the particles do not have.
+void check_names(const std::vector<Field>& fields, const ParticleSet& particles) {
+  std::string key;
+  try {
+    for (std::size_t k = 0; k < fields.size(); ++k) {
+      const Field& field = fields[k];
+      key = fmt::format("fields[{}].select.species", k);
+      if (!field.select.species.empty()) find_species(particles, field.select.species);
+      key = fmt::format("fields[{}].select.expression", k);
+      if (!field.select.expression.empty()) check_expression(field.select.expression, particles);
+      for (const auto& [name, value] :
+           {std::pair{"radius", &field.radius}, std::pair{"weight", &field.weight}}) {
+        key = fmt::format("fields[{}].{}", k, name);
+        const auto* property = *value ? std::get_if<std::string>(&**value) : nullptr;
+        if (property != nullptr) property_named(particles, *property);
+      }
+    }
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: {}", key, error.what()));
+  }
+}
+
 /// A name that Motes gave may be one that the scene gives to another field: then it gets a number,
 /// for columns and messages go by the name.
 void number_repeated_names(std::vector<Field>& fields) {
@@ -301,6 +299,7 @@ void number_repeated_names(std::vector<Field>& fields) {
 }  // namespace
 
 std::vector<Field> expand_fields(const Scene& scene, const ParticleSet& particles) {
+  check_names(scene.fields, particles);
   std::vector<Field> wanted = scene.fields;
   if (wanted.empty()) wanted.emplace_back().name = "all";
   std::vector<Field> fields;

@@ -153,7 +153,8 @@ void color_by_species(Scene& scene, const ParticleSet& particles);
 
 /// The fields that a scene comes to with these particles: one of all particles where it has none; a
 /// field with species_colors and several species becomes one field a species; all have names.
-/// Throws Error.
+/// Throws Error, which names the key ("fields[1].radius: what") where a field asks for species or
+/// properties that the particles do not have.
 std::vector<Field> expand_fields(const Scene& scene, const ParticleSet& particles);
 
 /// The particles, radii and weights of each field. `kernel` is the scene's. Defaults: radius is the

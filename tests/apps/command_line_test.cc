@@ -176,6 +176,16 @@ TEST_F(CommandLine, AnOutputThatCannotBeWrittenIsToldBeforeReading) {
   EXPECT_EQ(run("info a.xyz >/dev/full").status, 1);
 }
 
+TEST_F(CommandLine, PictureAndStatisticsAreTwoFiles) {
+  workspace_.write("a.png", "old");
+  for (const std::string same : {"a.png", "./a.png", "../$(basename $PWD)/a.png"}) {
+    EXPECT_THAT(failure("render a.xyz -o a.png --size 8x8 --stats " + same, 1),
+                StartsWith("motes: error: a.png: is both --output and --stats; expected two"))
+        << same;
+  }
+  EXPECT_EQ(workspace_.read("a.png"), "old");
+}
+
 TEST_F(CommandLine, AFailureHarmsNoOldFileAndLeavesNoneBehind) {
   workspace_.write("a.png", "old");
   workspace_.write("empty.xyz", "0\n\n");
@@ -290,11 +300,37 @@ TEST_F(CommandLine, MistakesThatTheDataShowNameTheirPlace) {
               StartsWith(start + "fields[0].weight: unknown property 'q'"));
   EXPECT_THAT(scene(R"("camera": {"eye": [0, 9, 0], "target": [0, 0, 0], "up": [0, 1, 0]})"),
               StartsWith(start + "camera.up: is parallel"));
-  EXPECT_THAT(failure("render a.xyz -o a.png --radius q", 1),
-              StartsWith("motes: error: --radius: unknown property 'q'"));
-  EXPECT_THAT(failure("probe a.xyz --points a.xyz --weight q", 1), HasSubstr("a.xyz"));
-  EXPECT_THAT(failure("render a.xyz -o a.png --eye 0,9,0 --target 0,0,0 --up 0,1,0", 1),
-              StartsWith("motes: error: --up: is parallel"));
+  EXPECT_THAT(scene(R"("render": {"step_size": 1e-12})"),
+              StartsWith(start + "render.step_size: 1e-12 takes "));
+  EXPECT_THAT(scene(R"("camera": {"eye": [0, 0, 1e30], "target": [0, 0, 0]})"),
+              StartsWith(start + "camera.eye: is 1e+30 away"));
+  EXPECT_EQ(scene(R"("fields": [{"select": {"expression": "x > 99"}}])"),
+            start + "field 'field0' selects none of the 3 particles\n");
+  workspace_.write("p.csv", "0,0,0\n");
+  EXPECT_EQ(failure("probe s.json --points p.csv", 1),
+            start + "field 'field0' selects none of the 3 particles\n");
+  workspace_.write("nan.xyz", "1\n\nSi nan 0 0\n");
+  EXPECT_THAT(run("render nan.xyz -o a.png").err,
+              HasSubstr("motes: error: nan.xyz: field 'all': none of its particles has a finite"));
+}
+
+TEST_F(CommandLine, MistakesOfOptionsThatTheDataShowNameTheOption) {
+  const auto message = [this](const std::string& options) {
+    return failure("render a.xyz -o a.png --size 8x8 " + options, 1);
+  };
+  const std::string start = "motes: error: ";
+  EXPECT_THAT(message("--eye 0,9,0 --target 0,0,0 --up 0,1,0"),
+              StartsWith(start + "--up: is parallel"));
+  EXPECT_THAT(message("--radius q"), StartsWith(start + "--radius: unknown property 'q'"));
+  EXPECT_THAT(message("--step-size 1e-12"), StartsWith(start + "--step-size: 1e-12 takes "));
+  EXPECT_THAT(message("--eye 0,0,1e30"), StartsWith(start + "--eye: is 1e+30 away"));
+  workspace_.write("p.csv", "0,0,0\n");
+  EXPECT_THAT(failure("probe a.xyz --points p.csv --weight q", 1),
+              StartsWith(start + "--weight: unknown property 'q'"));
+  // What has nothing to do with the file does not name it.
+  const Outcome outcome =
+      run("--version; MOTES_TARGET=no '" MOTES_PROGRAM "' render a.xyz -o a.png");
+  EXPECT_THAT(outcome.err, StartsWith(start + "MOTES_TARGET=no: "));
 }
 
 TEST_F(CommandLine, ATransferFunctionMayBeAFile) {
@@ -334,9 +370,6 @@ TEST_F(CommandLine, ParticlesThatCannotBeDrawnAreCounted) {
   EXPECT_EQ(outcome.status, 0);
   EXPECT_THAT(outcome.err, HasSubstr("motes: warning: "));
   EXPECT_THAT(outcome.err, HasSubstr("2 of 3 particles"));
-  workspace_.write("s.json", R"({"version": 1, "data": {"path": "a.xyz"},
-                                 "fields": [{"select": {"expression": "x > 99"}}]})");
-  EXPECT_THAT(failure("render s.json -o a.png", 1), HasSubstr("selects none of the 3 particles"));
 }
 
 TEST_F(CommandLine, NamesOfTypesThatAreNotThereAreTold) {
