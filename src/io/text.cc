@@ -197,12 +197,16 @@ TextBlock LineReader::take_rows(std::uint64_t count, std::string_view what) {
 }
 
 bool LineReader::skip_blank_lines() {
-  while (position_ != text_.size()) {
-    if (!trim(peek()).empty()) return true;
-    next("");
-  }
-  if (!complete_) throw TextEnds(file_, next_line_, "the file ends here");
-  return false;
+  const std::string_view rest = text_.substr(position_);
+  const auto filled = std::find_if_not(rest.begin(), rest.end(), is_blank);
+  const bool found = filled != rest.end();
+  const std::string_view blank(rest.begin(), filled);
+  const std::string_view lines = found ? blank.substr(0, blank.rfind('\n') + 1) : blank;
+  next_line_ += static_cast<std::uint64_t>(std::count(lines.begin(), lines.end(), '\n'));
+  if (!lines.empty() && lines.back() != '\n') ++next_line_;
+  position_ += lines.size();
+  if (!found && !complete_) throw TextEnds(file_, next_line_, "the file ends here");
+  return found;
 }
 
 std::uint64_t LineReader::parse_count(std::string_view text, std::string_view what) const {

@@ -91,6 +91,23 @@ TEST(LineReader, NamesTheLineOfWhatIsNoCount) {
               testing::ThrowsMessage<Error>("a.txt:6: expected a count, found '-1'"));
 }
 
+TEST(LineReader, CountsTheBlankLinesThatItSkips) {
+  const std::filesystem::path file("a.txt");
+  LineReader lines(file, {"\n \r\n  one\ntwo\n\n ", 5}, true);
+  EXPECT_TRUE(lines.skip_blank_lines());
+  EXPECT_EQ(lines.rest().first_line, 7u);
+  EXPECT_EQ(lines.next(""), "  one");
+  EXPECT_TRUE(lines.skip_blank_lines());
+  EXPECT_EQ(lines.next(""), "two");
+  EXPECT_FALSE(lines.skip_blank_lines());
+  EXPECT_EQ(lines.rest().first_line, 11u);
+  EXPECT_TRUE(lines.rest().text.empty());
+  EXPECT_FALSE(lines.skip_blank_lines());
+  EXPECT_EQ(lines.rest().first_line, 11u);
+  LineReader part(file, {"\n\n", 5}, false);
+  EXPECT_THROW(part.skip_blank_lines(), TextEnds);
+}
+
 TEST(LineReader, CountsLinesWhateverTheyEndIn) {
   const std::filesystem::path file("a.txt");
   LineReader lines(file, {"one\r\n\n two \nend", 5}, true);
