@@ -6,6 +6,7 @@
 #include <random>
 
 #include "reference/field.h"
+#include "support/particles_at.h"
 
 namespace motes {
 namespace {
@@ -19,13 +20,12 @@ struct Cloud {
 Cloud random_cloud(const Point3d& center, bool normalise) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> unit(0, 1);
-  std::vector<double> x, y, z;
+  std::vector<Point3d> points;
   Cloud cloud;
   cloud.fields.resize(2);
   for (std::uint32_t i = 0; i < 600; ++i) {
-    x.push_back(center.x + 10 * unit(random) - 5);
-    y.push_back(center.y + 10 * unit(random) - 5);
-    z.push_back(center.z + 10 * unit(random) - 5);
+    const double x = unit(random), y = unit(random), z = unit(random);
+    points.push_back(center + 10. * Vector3d{x - 0.5, y - 0.5, z - 0.5});
     for (std::size_t f = 0; f < 2; ++f) {
       if (f == 0 ? i >= 400 : i < 200) continue;
       cloud.fields[f].index.push_back(i);
@@ -35,7 +35,7 @@ Cloud random_cloud(const Point3d& center, bool normalise) {
   }
   cloud.fields[1].kernel = {3.0, -0.7};
   cloud.fields[1].normalise = normalise;
-  set_positions(cloud.particles, x, y, z);
+  cloud.particles = particles_at(points);
   return cloud;
 }
 

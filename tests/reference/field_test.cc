@@ -7,6 +7,8 @@
 #include <numbers>
 #include <random>
 
+#include "support/particles_at.h"
+
 namespace motes::reference {
 namespace {
 
@@ -112,9 +114,7 @@ TEST(ReferenceField, GradientIsTheDerivative) {
 }
 
 TEST(ReferenceKernels, ComeFromPositionsRadiiWeightsAndScale) {
-  ParticleSet particles;
-  const std::vector<double> x{1e6, 1e6 + 0.015625, 1e6}, y{0, 0, 1}, z{0, 0, 0};
-  set_positions(particles, x, y, z);
+  const ParticleSet particles = particles_at({{1e6, 0, 0}, {1e6 + 0.015625, 0, 0}, {1e6, 1, 0}});
   FieldSource source;
   source.kernel = {.support_factor = 3, .kernel_scale = 2};
   source.index = {1, 2};

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <random>
 
+#include "support/particles_at.h"
+
 namespace motes::reference {
 namespace {
 
@@ -22,20 +24,8 @@ TransferFunction constant_transfer(Color color, double extinction) {
 /// Seen along +z from z = -10 by an orthographic camera of one pixel; step 0.25, no lighting.
 SmallScene small_scene(const std::vector<Point3d>& centers) {
   SmallScene s;
-  std::vector<double> x, y, z;
-  for (const Point3d& c : centers) {
-    x.push_back(c.x);
-    y.push_back(c.y);
-    z.push_back(c.z);
-  }
-  set_positions(s.particles, x, y, z);
-  FieldSource source;
-  for (std::size_t i = 0; i < centers.size(); ++i) {
-    source.index.push_back(static_cast<std::uint32_t>(i));
-  }
-  source.radius = {0.5F};
-  source.weight = {1};
-  s.scene.fields = {source};
+  s.particles = particles_at(centers);
+  s.scene.fields = {field_of_all(s.particles, 0.5F, 1, {})};
   s.scene.transfer_functions = {constant_transfer({1, 0.5F, 0.25F}, 0.3)};
   s.scene.camera = {.eye = {0, 0, -10},
                     .target = {0, 0, 0},

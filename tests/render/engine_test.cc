@@ -13,6 +13,7 @@
 #include "reference/render.h"
 #include "render/engine_ways.h"
 #include "render/renderer.h"
+#include "support/particles_at.h"
 #include "support/random_scene.h"
 
 namespace motes {
@@ -106,18 +107,8 @@ TransferFunction ramp(double high, double extinction) {
 
 PlainScene plain_scene(const std::vector<Point3d>& centers, double distance) {
   PlainScene s;
-  std::vector<double> x, y, z;
-  FieldSource source;
-  for (const Point3d& c : centers) {
-    source.index.push_back(static_cast<std::uint32_t>(x.size()));
-    x.push_back(c.x);
-    y.push_back(c.y);
-    z.push_back(c.z);
-  }
-  set_positions(s.particles, x, y, z);
-  source.radius = {1};
-  source.weight = {1};
-  s.scene.fields = {source};
+  s.particles = particles_at(centers);
+  s.scene.fields = {field_of_all(s.particles, 1, 1, {})};
   s.scene.transfer_functions = {ramp(1, 1)};
   s.scene.camera.eye = {0, 0, distance};
   s.scene.camera.target = {0, 0, 0};

@@ -7,32 +7,10 @@
 #include <random>
 
 #include "core/error.h"
+#include "support/particles_at.h"
 
 namespace motes {
 namespace {
-
-ParticleSet particles_at(const std::vector<Point3d>& points) {
-  std::vector<double> x, y, z;
-  for (const Point3d& p : points) {
-    x.push_back(p.x);
-    y.push_back(p.y);
-    z.push_back(p.z);
-  }
-  ParticleSet particles;
-  set_positions(particles, x, y, z);
-  return particles;
-}
-
-FieldSource field_of_all(const ParticleSet& particles, float radius, float weight,
-                         const Kernel& kernel) {
-  FieldSource field;
-  field.name = "all";
-  field.kernel = kernel;
-  for (std::uint32_t i = 0; i < particles.size(); ++i) field.index.push_back(i);
-  field.radius = {radius};
-  field.weight = {weight};
-  return field;
-}
 
 /// Looks at the origin from z = 20; an odd size, so that the middle pixel's ray is the axis.
 ResolvedScene scene_along_z(double step, const TransferFunction& function) {

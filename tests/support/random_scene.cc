@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "reference/field.h"
+#include "support/particles_at.h"
 
 namespace motes {
 namespace {
@@ -63,19 +64,15 @@ Extent draw_extent(Draw& draw, int num_particles) {
 }
 
 ParticleSet draw_particles(Draw& draw, const Extent& extent, int num_particles) {
-  std::vector<double> x, y, z;
+  std::vector<Point3d> points;
   const bool flat = draw.chance(0.1), coincident = draw.chance(0.1);
   for (int i = 0; i < num_particles; ++i) {
     Point3d p = extent.center + extent.size * draw.in_cube();
     if (flat) p.y = extent.center.y;
-    if (coincident && i % 3 == 2) p = {x.back(), y.back(), z.back()};
-    x.push_back(p.x);
-    y.push_back(p.y);
-    z.push_back(p.z);
+    if (coincident && i % 3 == 2) p = points.back();
+    points.push_back(p);
   }
-  ParticleSet particles;
-  set_positions(particles, x, y, z);
-  return particles;
+  return particles_at(points);
 }
 
 FieldSource draw_field(Draw& draw, const Extent& extent, int num_particles, int field,

@@ -1,0 +1,103 @@
+// What a scene leaves open is filled in; what it says stays.
+#include "render/resolve.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "scene/fit.h"
+#include "support/particles_at.h"
+
+namespace motes {
+namespace {
+
+class CountedUpdates : public Progress {
+ public:
+  void update(std::string_view, double) override { ++count; }
+  int count = 0;
+};
+
+/// Two particles apart, one field of both, and what they come to.
+class Resolve : public testing::Test {
+ protected:
+  Resolve() { fields_[0].name = "all"; }
+  ResolvedScene resolve_scene(Progress* progress = nullptr) const {
+    return resolve(scene_, particles_, fields_, sources_, kernels_, progress);
+  }
+
+  const ParticleSet particles_ = particles_at({{-3, 0, 0}, {3, 0, 0}});
+  const std::vector<FieldSource> sources_{field_of_all(particles_, 0.5f, 1, {})};
+  const KernelSet kernels_ = build_kernel_set(particles_, sources_);
+  std::vector<Field> fields_{1};
+  Scene scene_;
+};
+
+TEST_F(Resolve, FillsInWhatIsOpen) {
+  scene_.render.width = 200;
+  scene_.render.height = 100;
+  CountedUpdates progress;
+  const ResolvedScene resolved = resolve_scene(&progress);
+  EXPECT_EQ(resolved.render, scene_.render);
+  EXPECT_EQ(resolved.step_size, default_step_size(sources_, kernels_.box()));
+  const Camera camera = fit_camera(scene_, visible_spheres(particles_, sources_), 2);
+  EXPECT_EQ(resolved.camera.eye, camera.eye);
+  EXPECT_EQ(resolved.camera.target, camera.target);
+  EXPECT_GT(progress.count, 0);
+  // Fitted to values that the field takes: at most 1 anywhere.
+  ASSERT_EQ(resolved.transfer_functions.size(), 1u);
+  const std::vector<TransferFunction::Point>& points = resolved.transfer_functions[0].points;
+  ASSERT_GT(points.size(), 1u);
+  EXPECT_GT(points.front().value, 0);
+  EXPECT_GT(points.back().value, 0.1);
+  EXPECT_LT(points.back().value, 1.01);
+  EXPECT_GT(points.back().extinction, 0);
+}
+
+TEST_F(Resolve, KeepsWhatTheSceneSaysWithoutLookingAtTheData) {
+  const TransferFunction function{{{1, {1, 0, 0}, 2}, {5, {0, 1, 0}, 3}}, false};
+  fields_[0].transfer_function = function;
+  fields_.push_back({});
+  fields_[1].transfer_function = NamedTransferFunction{"magma", {{2, 7}}, 4.0, false};
+  scene_.eye = {1, 2, 30};
+  scene_.target = {1, 2, 3};
+  scene_.up = {1, 0, 0};
+  scene_.fov_degrees = 20;
+  scene_.render.step_size = 0.125;
+  const std::vector<FieldSource> sources{sources_[0], sources_[0]};
+  CountedUpdates progress;
+  const ResolvedScene resolved = resolve(scene_, particles_, fields_, sources,
+                                         build_kernel_set(particles_, sources), &progress);
+  EXPECT_EQ(resolved.camera.eye, scene_.eye);
+  EXPECT_EQ(resolved.camera.target, scene_.target);
+  EXPECT_EQ(resolved.camera.up, scene_.up);
+  EXPECT_EQ(resolved.camera.fov_degrees, 20);
+  EXPECT_EQ(resolved.step_size, 0.125);
+  ASSERT_EQ(resolved.transfer_functions.size(), 2u);
+  EXPECT_EQ(resolved.transfer_functions[0], function);
+  EXPECT_EQ(resolved.transfer_functions[1], named_transfer_function("magma", 2, 7, 4, false));
+  EXPECT_EQ(progress.count, 0) << "nothing is left to fit";
+}
+
+TEST_F(Resolve, FitsColoursToWhatTheCameraSees) {
+  // Beside the particles: nothing but the empty space between them is in view.
+  const auto highest = [this] { return resolve_scene().transfer_functions[0].points.back().value; };
+  scene_.orthographic_height = 0.25;
+  scene_.eye = {-3, 0, 10};
+  scene_.target = {-3, 0, 0};
+  scene_.render.width = scene_.render.height = 16;
+  const double middle = highest();
+  scene_.eye = {-3, 0.9, 10};
+  scene_.target = {-3, 0.9, 0};
+  EXPECT_LT(highest(), 0.6 * middle);  // near the kernel's edge
+}
+
+TEST_F(Resolve, RefusesACameraThatCannotBe) {
+  scene_.eye = {0, 5, 0};
+  scene_.target = {0, 0, 0};
+  scene_.up = {0, 1, 0};
+  EXPECT_THAT([this] { resolve_scene(); },
+              testing::ThrowsMessage<Error>(testing::StartsWith("camera.up: is parallel")));
+}
+
+}  // namespace
+}  // namespace motes
