@@ -8,19 +8,17 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <random>
 
 #include "core/error.h"
+#include "core/stopwatch.h"
 #include "io/reader.h"
 
 namespace motes {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t num_atoms = 5'000'000;
 constexpr std::size_t num_ase_atoms = 100'000;
@@ -46,10 +44,10 @@ double median(std::vector<double> values) {
 }
 
 double seconds_of_motes(const std::filesystem::path& path) {
-  const auto start = Clock::now();
+  const Stopwatch stopwatch;
   const ReadOptions options;
   const ParticleSet particles = open_trajectory(path, options)->read_frame(0);
-  const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  const double seconds = stopwatch.milliseconds() / 1000;
   if (particles.size() != num_atoms) throw Error(path, "read another number of atoms than written");
   return seconds;
 }

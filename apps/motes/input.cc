@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 
 #include "core/error.h"
+#include "core/stopwatch.h"
 #include "io/reader.h"
 
 namespace motes {
@@ -19,15 +19,13 @@ Scene open_scene(const std::filesystem::path& path) {
 }
 
 Input read_particles(const Scene& scene, Console& console) {
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch stopwatch;
   const ReadOptions options{scene.types, &console, &console.warnings()};
   const auto trajectory = open_trajectory(scene.data_path, options);
   Input input;
   input.format = trajectory->format();
   input.particles = trajectory->read_frame(scene.frame);
-  const std::chrono::duration<double, std::milli> elapsed =
-      std::chrono::steady_clock::now() - start;
-  input.read_ms = elapsed.count();
+  input.read_ms = stopwatch.milliseconds();
   console.print_warnings();
   if (input.particles.size() == 0) throw Error(scene.data_path, "has no particles in this frame");
   return input;

@@ -9,21 +9,16 @@
 #include <algorithm>
 #include <atomic>
 #include <cassert>
-#include <chrono>
 #include <cmath>
 #include <mutex>
 #include <numbers>
 
 #include "core/error.h"
+#include "core/stopwatch.h"
 #include "render/render_tile.h"
 
 namespace motes {
 namespace {
-
-double milliseconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
-      .count();
-}
 
 /// World to internal: relative to the kernels' origin, scaled.
 Point3d to_internal(const KernelSet& kernels, const Point3d& p) {
@@ -108,9 +103,9 @@ constexpr int tile_size = 32;
 }  // namespace
 
 Renderer::Renderer(const ParticleSet& particles, const std::vector<FieldSource>& fields) {
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch stopwatch;
   kernels_ = build_kernel_set(particles, fields);
-  build_ms_ = milliseconds_since(start);
+  build_ms_ = stopwatch.milliseconds();
 }
 
 void Renderer::set_kernel(std::size_t field, const Kernel& kernel) {
@@ -123,7 +118,7 @@ Framebuffer Renderer::render(const ResolvedScene& scene, const RenderOptions& op
   assert(scene.transfer_functions.size() == kernels_.fields.size());
   assert(scene.step_size > 0);
   const std::string target = instruction_set();
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch stopwatch;
   Framebuffer image(scene.render.width, scene.render.height);
   const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
   std::atomic<std::uint64_t> samples{0}, evaluations{0};
@@ -155,7 +150,7 @@ Framebuffer Renderer::render(const ResolvedScene& scene, const RenderOptions& op
     });
   }
   if (statistics != nullptr) {
-    *statistics = {milliseconds_since(start),
+    *statistics = {stopwatch.milliseconds(),
                    samples,
                    evaluations,
                    threads,
