@@ -134,33 +134,6 @@ TEST(Cif, CutShortIsAnErrorOfOneLineOrCorrect) {
   expect_clear_errors_when_cut("a.cif", content);
 }
 
-struct SharedCif {
-  const char* name;
-  std::size_t num_particles, num_frames;
-};
-
-class SharedCifs : public testing::TestWithParam<SharedCif> {};
-
-TEST_P(SharedCifs, HaveTheNumbersThatTheirNotesGive) {
-  const auto path = shared_file(std::string("files/") + GetParam().name);
-  if (!path) GTEST_SKIP() << GetParam().name << " is not here";
-  const ReadOptions options;
-  const auto trajectory = open_trajectory(*path, options);
-  ASSERT_EQ(trajectory->num_frames(), GetParam().num_frames);
-  for (std::size_t frame = 0; frame < GetParam().num_frames; ++frame) {
-    EXPECT_EQ(trajectory->read_frame(frame).size(), GetParam().num_particles);
-  }
-}
-
-INSTANTIATE_TEST_SUITE_P(Files, SharedCifs,
-                         testing::Values(SharedCif{"mmcif/1544173.cif", 100, 1},
-                                         SharedCif{"mmcif/1ake.cif.gz", 3804, 1},
-                                         SharedCif{"mmcif/4hhb.cif", 4779, 1},
-                                         SharedCif{"mmcif/Zr-UiO-66-pressure.cif", 456, 3},
-                                         SharedCif{"zeolite_cif/FAU.cif", 576, 1},
-                                         SharedCif{"zeolite_cif/LTA.cif", 72, 1},
-                                         SharedCif{"zeolite_cif/MFI.cif", 288, 1}));
-
 TEST(SharedCifs, OfAZeoliteHaveTwoOxygensASilicon) {
   const auto path = shared_file("files/zeolite_cif/MFI.cif");
   if (!path) GTEST_SKIP() << "MFI.cif is not here";

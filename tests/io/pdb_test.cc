@@ -132,37 +132,6 @@ TEST(Pdb, CutShortIsAnErrorOfOneLineOrCorrect) {
   expect_clear_errors_when_cut("a.pdb", content + "END\n");
 }
 
-struct SharedPdb {
-  const char* name;
-  std::size_t num_particles, num_frames;
-};
-
-class SharedPdbs : public testing::TestWithParam<SharedPdb> {};
-
-TEST_P(SharedPdbs, HaveTheNumbersThatTheirNotesGive) {
-  const auto path = shared_file(std::string("files/") + GetParam().name);
-  if (!path) GTEST_SKIP() << GetParam().name << " is not here";
-  const ReadOptions options;
-  const auto trajectory = open_trajectory(*path, options);
-  EXPECT_EQ(trajectory->format(), "PDB");
-  EXPECT_EQ(trajectory->num_frames(), GetParam().num_frames);
-  EXPECT_EQ(trajectory->read_frame(GetParam().num_frames - 1).size(), GetParam().num_particles);
-}
-
-INSTANTIATE_TEST_SUITE_P(
-    Files, SharedPdbs,
-    testing::Values(
-        SharedPdb{"pdb/1npc.pdb.gz", 2699, 1}, SharedPdb{"pdb/1vln-triclinic.pdb", 14520, 1},
-        SharedPdb{"pdb/4hhb.pdb", 4779, 1}, SharedPdb{"pdb/5digitResid.pdb", 5, 1},
-        SharedPdb{"pdb/MOF-5.pdb", 65, 1}, SharedPdb{"pdb/chainIDnewres.pdb.gz", 22, 1},
-        SharedPdb{"pdb/charges.pdb", 36, 1}, SharedPdb{"pdb/crystal-maker.pdb", 8, 1},
-        SharedPdb{"pdb/elements.pdb", 28, 1}, SharedPdb{"pdb/fullerene.pdb.gz", 60, 1},
-        SharedPdb{"pdb/hemo.pdb", 522, 1}, SharedPdb{"pdb/namd_cgenff.pdb", 130, 1},
-        SharedPdb{"pdb/nmr_neopetrosiamide.pdb", 392, 24},
-        SharedPdb{"pdb/psfgen-output.pdb", 26, 1}, SharedPdb{"pdb/start_128popc.pdb", 28526, 1},
-        SharedPdb{"pdb/tz2_2.pdb.gz", 5293, 1}, SharedPdb{"pdb/xl_serial.pdb", 4, 1},
-        SharedPdb{"traj/RANDOM_WALK_TOPO.pdb", 100, 1}, SharedPdb{"traj/test_topology.pdb", 5, 1}));
-
 TEST(SharedPdbs, OfHaemoglobinHaveItsElements) {
   const auto path = shared_file("files/pdb/4hhb.pdb");
   if (!path) GTEST_SKIP() << "4hhb.pdb is not here";
