@@ -24,10 +24,11 @@ Camera camera_along_z() {
   return camera;
 }
 
-/// Kernels of `points`: one field of each factor on all weights, 1.
+/// Kernels at `points`: one field for each of the scales, all weights 1.
 KernelSet kernels_at(const std::vector<Point3d>& points, const std::vector<double>& kernel_scales) {
   const ParticleSet particles = particles_at(points);
   std::vector<FieldSource> fields;
+  fields.reserve(kernel_scales.size());
   for (const double kernel_scale : kernel_scales) {
     fields.push_back(field_of_all(particles, radius, 1, {sigma, kernel_scale}));
   }
