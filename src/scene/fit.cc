@@ -19,6 +19,13 @@ constexpr std::size_t radii_looked_at = 65536;  // of one field: enough for a qu
 constexpr double log_decades = 2.5;
 // Of the rays that meet matter, on average: neither fog nor block. Several fields share it.
 constexpr double target_opacity = 0.7;
+// Where values span decades, what is dense lies behind much that is not. So the extinction rises
+// with this power of the place in the range, and this much of the light of the densest place on a
+// ray comes through what is in front of it, unless so little opacity is left that all is faint.
+constexpr double log_steepness = 1.5;
+constexpr double light_of_peaks = 0.6;
+constexpr double least_opacity = 0.3 / target_opacity;  // of the opacity aimed at
+constexpr int log_points = 9;                           // of one colour
 constexpr float paleness = 0.35f;  // of a species' colour at the largest values: shape shows
 constexpr const char* default_map = "viridis";
 
@@ -40,6 +47,12 @@ void for_some_radii(const FieldSource& field, F&& look) {
 struct Range {
   double low = 0, high = 1;
   bool log_scale = false, both_signs = false;
+  double steepness = 1;  // the extinction rises with this power of the place in the range
+
+  /// The value at a place of the range, 0 to 1.
+  double value_at(double place) const {
+    return log_scale ? low * std::pow(high / low, place) : low + place * (high - low);
+  }
 };
 
 Range fit_range(const RayProfiles& profiles, std::optional<bool> log_scale) {
@@ -71,8 +84,8 @@ Range fit_range(const RayProfiles& profiles, std::optional<bool> log_scale) {
   return range;
 }
 
-/// How far `value` lies in the range, 0 to 1; the extinction rises with it.
-double ramp(const Range& range, double value) {
+/// How far `value` lies in the range, 0 to 1.
+double place(const Range& range, double value) {
   if (range.both_signs) return std::min(std::abs(value) / range.high, 1.0);
   if (range.log_scale) {
     if (!(value > range.low)) return 0;
@@ -81,43 +94,88 @@ double ramp(const Range& range, double value) {
   return std::clamp((value - range.low) / (range.high - range.low), 0.0, 1.0);
 }
 
-/// The extinction at the end of the ramp that makes rays through matter as opaque as they should be
-/// on average.
-double fit_extinction(const RayProfiles& profiles, const Range& range, double opacity) {
-  std::vector<double> depth;  // of each ray that meets matter, for an extinction of 1
-  for (std::size_t ray = 0; ray < profiles.spacing.size(); ++ray) {
-    double sum = 0;
-    for (std::size_t k = profiles.ray_begin[ray]; k < profiles.ray_begin[ray + 1]; ++k) {
-      sum += ramp(range, profiles.values[k]);
+/// The extinction at `value`, as a part of that at the end of the range.
+double ramp(const Range& range, double value) {
+  return std::pow(place(range, value), range.steepness);
+}
+
+/// A ray that meets matter, for an extinction of 1 at the end of the range.
+struct RayDepth {
+  double whole = 0;     ///< optical depth
+  double in_front = 0;  ///< of what lies in front of the largest value
+  double peak = 0;      ///< extinction at the largest value
+};
+
+std::vector<RayDepth> ray_depths(const RayProfiles& profiles, const Range& range) {
+  std::vector<RayDepth> rays;
+  for (std::size_t r = 0; r < profiles.spacing.size(); ++r) {
+    RayDepth ray;
+    for (std::size_t k = profiles.ray_begin[r]; k < profiles.ray_begin[r + 1]; ++k) {
+      const double extinction = ramp(range, profiles.values[k]);
+      if (extinction > ray.peak) {
+        ray.peak = extinction;
+        ray.in_front = ray.whole;
+      }
+      ray.whole += extinction * profiles.spacing[r];
     }
-    if (sum > 0) depth.push_back(sum * profiles.spacing[ray]);
+    if (ray.whole > 0) rays.push_back(ray);
   }
-  if (depth.empty()) return 1;
-  const auto mean_opacity = [&depth](double extinction) {
+  return rays;
+}
+
+/// The extinction at the end of the range that makes rays through matter as opaque as they should
+/// be on average; less where that would hide what is dense.
+double fit_extinction(const RayProfiles& profiles, const Range& range, double opacity) {
+  std::vector<RayDepth> rays = ray_depths(profiles, range);
+  if (rays.empty()) return 1;
+  const auto mean_opacity = [&rays](double extinction) {
     double sum = 0;
-    for (const double d : depth) sum += 1 - std::exp(-extinction * d);
-    return sum / static_cast<double>(depth.size());
+    for (const RayDepth& ray : rays) sum += 1 - std::exp(-extinction * ray.whole);
+    return sum / static_cast<double>(rays.size());
   };
-  // The mean rises with the extinction: bisect its logarithm about one over the middle depth.
-  const auto middle = depth.begin() + static_cast<std::ptrdiff_t>(depth.size() / 2);
-  std::nth_element(depth.begin(), middle, depth.end());
-  double low = 1e-4 / *middle, high = 1e4 / *middle;
+  const auto hides_peaks = [&](double extinction) {
+    if (!range.log_scale) return false;
+    double seen = 0, all = 0;
+    for (const RayDepth& ray : rays) {
+      seen += ray.peak * std::exp(-extinction * ray.in_front);
+      all += ray.peak;
+    }
+    return seen < light_of_peaks * all;
+  };
+  // All of this grows with the extinction: bisect its logarithm about one over the middle depth.
+  const auto middle = rays.begin() + static_cast<std::ptrdiff_t>(rays.size() / 2);
+  std::nth_element(rays.begin(), middle, rays.end(),
+                   [](const RayDepth& a, const RayDepth& b) { return a.whole < b.whole; });
+  double low = 1e-8 / middle->whole, high = 1e8 / middle->whole;
   for (int step = 0; step < 60; ++step) {
-    const double extinction = std::sqrt(low * high);
-    (mean_opacity(extinction) < opacity ? low : high) = extinction;
+    const double extinction = std::sqrt(low) * std::sqrt(high);
+    const double reached = mean_opacity(extinction);
+    const bool too_faint =
+        reached < least_opacity * opacity || (reached < opacity && !hides_peaks(extinction));
+    (too_faint ? low : high) = extinction;
   }
   return high;
 }
 
 TransferFunction one_color(const Color& color, const Range& range, double extinction) {
-  const auto paler = [](float channel) { return channel + paleness * (1 - channel); };
-  const Color pale{paler(color.r), paler(color.g), paler(color.b)};
+  const auto paler = [](float channel, float part) {
+    return channel + part * paleness * (1 - channel);
+  };
+  const auto point = [&](double value) {
+    const auto part = static_cast<float>(place(range, value));
+    const Color pale{paler(color.r, part), paler(color.g, part), paler(color.b, part)};
+    return TransferFunction::Point{value, pale, extinction * ramp(range, value)};
+  };
   TransferFunction function;
   function.log_scale = range.log_scale;
-  if (range.both_signs) function.points.push_back({range.low, pale, extinction});
-  const double start = range.both_signs ? 0 : range.low;
-  function.points.push_back({start, color, 0});
-  function.points.push_back({range.high, pale, extinction});
+  if (range.both_signs) {
+    for (const double value : {range.low, 0.0, range.high}) function.points.push_back(point(value));
+    return function;
+  }
+  const int last = range.steepness == 1 ? 1 : log_points - 1;
+  for (int k = 0; k <= last; ++k) {
+    function.points.push_back(point(range.value_at(static_cast<double>(k) / last)));
+  }
   return function;
 }
 
@@ -186,6 +244,7 @@ TransferFunction fit_transfer_function(const decltype(Field::transfer_function)&
   } else {
     range = fit_range(profiles, named.log_scale);
   }
+  if (range.log_scale && !named.extinction) range.steepness = log_steepness;
   const double extinction =
       named.extinction ? *named.extinction : fit_extinction(profiles, range, opacity);
 

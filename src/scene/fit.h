@@ -51,8 +51,10 @@ double fit_opacity(const std::vector<RayProfiles>& profiles);
 /// - the range spans from the median of the values that are not 0 to nearly the largest, on a
 ///   logarithmic scale from their 70 % quantile where they span decades; for values of both signs
 ///   it is symmetric about 0;
-/// - the extinction rises linearly over the range so that rays through matter get `opacity` on
-///   average.
+/// - the extinction rises over the range so that rays through matter get `opacity` on average:
+///   linearly, or on a logarithmic scale with the power 1.5 of the place in it, and then less where
+///   more than 40 % of the light of the rays' largest values would be lost in front of them, but
+///   not below 3/7 of `opacity`. A given extinction always rises linearly.
 /// `species_color` is the colour of species_colors, paler towards the end of the range. Throws
 /// Error for a range that cannot be.
 TransferFunction fit_transfer_function(const decltype(Field::transfer_function)& wish,

@@ -274,9 +274,47 @@ TEST(FitTransferFunction, IsLogarithmicWhereValuesSpanDecades) {
   TransferFunction f = fit_transfer_function({}, {}, profiles, 0.7);
   EXPECT_TRUE(f.log_scale);
   EXPECT_GT(f.points.front().value, 0);
-  EXPECT_NEAR(mean_opacity(f, profiles), 0.7, 0.01);
+  EXPECT_GT(mean_opacity(f, profiles), 0.3 - 0.01);
+  EXPECT_LT(mean_opacity(f, profiles), 0.7 + 0.01);
   f = fit_transfer_function(NamedTransferFunction{"heat", {}, {}, false}, {}, profiles, 0.7);
   EXPECT_FALSE(f.log_scale);
+}
+
+/// Rays past a centre, near to far: a density that falls with a power of the distance.
+RayProfiles halo(double steepness) {
+  return profiles_of(400, 101, 0.02, [steepness](std::size_t r, std::size_t k) {
+    const double past = 0.002 * static_cast<double>(r),
+                 along = 0.02 * (static_cast<double>(k) - 50);
+    return std::pow(1e-3 + past * past + along * along, -steepness / 2);
+  });
+}
+
+TEST(FitTransferFunction, ShowsDenseCoresThroughTheirOutskirts) {
+  for (const double steepness : {4.0, 6.0, 8.0}) {
+    const RayProfiles profiles = halo(steepness);
+    const TransferFunction f = fit_transfer_function({}, {}, profiles, 0.7);
+    ASSERT_TRUE(f.log_scale);
+    double in_front = 0;  // of the core, on the ray through the centre
+    for (std::size_t k = 0; k < 50; ++k) in_front += 0.02 * extinction_at(f, profiles.values[k]);
+    EXPECT_GT(std::exp(-in_front), 0.4) << steepness;
+    EXPECT_GT(mean_opacity(f, profiles), 0.3 - 0.01) << steepness;
+    EXPECT_LT(mean_opacity(f, profiles), 0.7) << steepness;
+  }
+}
+
+TEST(FitTransferFunction, RisesMoreSteeplyOverDecadesUnlessItsExtinctionIsGiven) {
+  const RayProfiles profiles = halo(6);
+  const auto middle_of = [](const TransferFunction& f) {
+    const double middle = std::sqrt(f.points.front().value * f.points.back().value);
+    return extinction_at(f, middle) / f.points.back().extinction;
+  };
+  for (const char* name : {"magma", "species"}) {
+    NamedTransferFunction named{name, {}, {}, {}};
+    const double fitted = middle_of(fit_transfer_function(named, {}, profiles, 0.7));
+    EXPECT_NEAR(fitted, std::pow(0.5, 1.5), 1e-3) << name;
+    named.extinction = 20;
+    EXPECT_NEAR(middle_of(fit_transfer_function(named, {}, profiles, 0.7)), 0.5, 1e-6) << name;
+  }
 }
 
 TEST(FitTransferFunction, ValuesOfBothSignsAreSymmetricAboutZero) {
