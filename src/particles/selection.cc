@@ -47,8 +47,14 @@ Operand bind_variable(const ParticleSet& particles, std::string_view expression,
   if (const Property* property = particles.find_property(name)) {
     return {Source::property, 0, property->values.data()};
   }
+  const auto& species = particles.species_names;
+  const bool is_species = std::find(species.begin(), species.end(), name) != species.end();
   throw_at_column(expression, instruction.column,
-                  unknown_name("property", name, known_names(particles)).what());
+                  is_species
+                      ? fmt::format("unknown property '{0}'; text is written in quotes, as in "
+                                    "species == '{0}'",
+                                    printable(name))
+                      : unknown_name("property", name, known_names(particles)).what());
 }
 
 /// A text's value is the index of the species of that name, so that texts compare as numbers; texts
@@ -70,7 +76,10 @@ Operand bind_text(const ParticleSet& particles, const std::string& text,
 class Program {
  public:
   Program(const ParticleSet& particles, std::string_view expression)
-      : particles_(particles), instructions_(parse_expression(expression)) {
+      : particles_(particles),
+        instructions_(parse_expression(expression, [&](const Instruction& variable) {
+          bind_variable(particles, expression, variable);
+        })) {
     std::vector<std::string> other_texts;
     std::size_t height = 0;
     for (const Instruction& instruction : instructions_) {
@@ -228,6 +237,14 @@ void check_expression(std::string_view expression) { parse_expression(expression
 
 void check_expression(std::string_view expression, const ParticleSet& particles) {
   Program(particles, expression);
+}
+
+std::vector<std::string> texts_of(std::string_view expression) {
+  std::vector<std::string> texts;
+  for (const Instruction& instruction : parse_expression(expression)) {
+    if (instruction.operation == Operation::text) texts.push_back(instruction.name);
+  }
+  return texts;
 }
 
 std::vector<std::uint32_t> select_where(const ParticleSet& particles, std::string_view expression) {

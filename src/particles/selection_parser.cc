@@ -26,11 +26,14 @@ constexpr Function functions[] = {
     {"exp", Operation::exp}, {"min", Operation::min},   {"max", Operation::max},
 };
 
-enum class Type { number, text, condition };
+/// A property whose name nobody has checked may turn out to be a mistyped `species`: `unchecked`
+/// stands for a number or a text, so that the mistake is told as one of the name.
+enum class Type { number, text, condition, unchecked };
 
 std::string_view name_of(Type type) {
   switch (type) {
     case Type::number:
+    case Type::unchecked:
       return "a number";
     case Type::text:
       return "text";
@@ -48,7 +51,9 @@ bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 class Parser {
  public:
-  explicit Parser(std::string_view text) : text_(text) { skip_blanks(); }
+  Parser(std::string_view text, const CheckVariable& check) : text_(text), check_(check) {
+    skip_blanks();
+  }
 
   std::vector<Instruction> parse() {
     const std::size_t start = at_;
@@ -105,16 +110,19 @@ class Parser {
     const auto operation = accept_comparison();
     if (!operation) return left;
     const Type right = parse_sum();
-    if (left != right) {
+    const bool open = left == Type::unchecked || right == Type::unchecked;
+    const bool conditions = left == Type::condition || right == Type::condition;
+    if (left != right && (!open || conditions)) {
       fail(column, fmt::format("cannot compare {} with {}{}", name_of(left), name_of(right),
                                left == Type::text || right == Type::text
                                    ? "; text is written in quotes, as in species == 'Si'"
                                    : ""));
     }
     const bool equality = *operation == Operation::equal || *operation == Operation::not_equal;
-    if (left != Type::number && !equality) {
+    for (const Type type : {left, right}) {
+      if (type == Type::number || type == Type::unchecked || equality) continue;
       fail(column,
-           fmt::format("expected numbers to compare, or == or !=, found {}", name_of(left)));
+           fmt::format("expected numbers to compare, or == or !=, found {}", name_of(type)));
     }
     emit(*operation, column);
     const std::size_t next = at_;
@@ -202,8 +210,7 @@ class Parser {
       return Type::text;
     }
     if (c == '`') {
-      emit(Operation::variable, start).name = quoted(c);
-      return Type::number;
+      return variable(quoted(c), start);
     }
     if (starts_name(c)) return parse_name();
     fail(start, "expected a number, a name, a text in quotes or '(', found " + found());
@@ -236,8 +243,16 @@ class Parser {
                                 keyword));
       }
     }
-    emit(Operation::variable, start).name = name;
-    return name == "species" ? Type::text : Type::number;
+    const Type type = variable(name, start);
+    return name == "species" ? Type::text : type;
+  }
+
+  Type variable(const std::string& name, std::size_t start) {
+    Instruction& instruction = emit(Operation::variable, start);
+    instruction.name = name;
+    if (!check_) return Type::unchecked;
+    check_(instruction);
+    return Type::number;
   }
 
   Type parse_call(const std::string& name, std::size_t start) {
@@ -310,7 +325,7 @@ class Parser {
   }
 
   void expect(Type type, Type wanted, std::size_t at, std::string_view where) const {
-    if (type == wanted) return;
+    if (type == wanted || (type == Type::unchecked && wanted == Type::number)) return;
     fail(at, fmt::format("{} {}; expected {}", where, name_of(type), name_of(wanted)));
   }
 
@@ -337,6 +352,7 @@ class Parser {
   };
 
   std::string_view text_;
+  const CheckVariable& check_;
   std::size_t at_ = 0;
   int depth_ = 0;
   std::vector<Instruction> program_;
@@ -349,8 +365,8 @@ int arity(Operation operation) {
   return operation <= Operation::exp ? 1 : 2;
 }
 
-std::vector<Instruction> parse_expression(std::string_view expression) {
-  return Parser(expression).parse();
+std::vector<Instruction> parse_expression(std::string_view expression, const CheckVariable& check) {
+  return Parser(expression, check).parse();
 }
 
 void throw_at_column(std::string_view expression, std::size_t column, std::string_view what) {

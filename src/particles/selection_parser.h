@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -48,9 +49,14 @@ struct Instruction {
   std::size_t column = 0;  ///< in the expression, from 1
 };
 
+/// Throws Error for a variable that is not there.
+using CheckVariable = std::function<void(const Instruction&)>;
+
 /// Instructions in postfix order; the last one leaves a condition. Throws Error that names the
-/// column and what was expected.
-std::vector<Instruction> parse_expression(std::string_view expression);
+/// column and what was expected. `check` sees each variable before it is held against what it is
+/// compared with; without it, variables may be compared with texts too.
+std::vector<Instruction> parse_expression(std::string_view expression,
+                                          const CheckVariable& check = nullptr);
 
 /// "expression '...', column N: what".
 [[noreturn]] void throw_at_column(std::string_view expression, std::size_t column,

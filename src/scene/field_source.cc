@@ -154,6 +154,17 @@ std::vector<std::uint32_t> select_particles(const ParticleSet& particles, const 
 
 namespace {
 
+/// "; unknown species ..." for the first text of the expression that is none, or "".
+std::string unknown_species_in(const Selection& select, const ParticleSet& particles) {
+  if (select.expression.empty()) return "";
+  const auto& known = particles.species_names;
+  for (const std::string& text : texts_of(select.expression)) {
+    if (std::find(known.begin(), known.end(), text) != known.end()) continue;
+    return std::string("; ") + unknown_species(text, known).what();
+  }
+  return "";
+}
+
 /// A field's particles, not yet checked; radii and weights are left open.
 FieldSource select_source(const ParticleSet& particles, const Field& field, const Kernel& kernel) {
   FieldSource source;
@@ -162,8 +173,8 @@ FieldSource select_source(const ParticleSet& particles, const Field& field, cons
   source.kernel.kernel_scale = field.kernel_scale.value_or(kernel.kernel_scale);
   source.index = select_particles(particles, field.select);
   if (source.index.empty()) {
-    throw Error(fmt::format("field '{}' selects none of the {} particles", printable(field.name),
-                            particles.size()));
+    throw Error(fmt::format("field '{}' selects none of the {} particles{}", printable(field.name),
+                            particles.size(), unknown_species_in(field.select, particles)));
   }
   return source;
 }

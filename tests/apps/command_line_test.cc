@@ -296,6 +296,12 @@ TEST_F(CommandLine, MistakesThatTheDataShowNameTheirPlace) {
               StartsWith(start + "fields[1].select.species: unknown species 'Sj'"));
   EXPECT_THAT(scene(R"("fields": [{"select": {"expression": "q > 1"}}])"),
               StartsWith(start + "fields[0].select.expression: "));
+  EXPECT_THAT(scene(R"("fields": [{"select": {"expression": "specis == 'Si'"}}])"),
+              HasSubstr("column 1: unknown property 'specis'; did you mean 'species'?"));
+  EXPECT_EQ(scene(R"("fields": [{"select": {"expression": "species == 'Sj'"}}])"),
+            start +
+                "field 'field0' selects none of the 3 particles; unknown species 'Sj'; did you "
+                "mean 'Si'?\n");
   EXPECT_THAT(scene(R"("fields": [{"weight": "q"}])"),
               StartsWith(start + "fields[0].weight: unknown property 'q'"));
   EXPECT_THAT(scene(R"("camera": {"eye": [0, 9, 0], "target": [0, 0, 0], "up": [0, 1, 0]})"),

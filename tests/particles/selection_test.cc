@@ -103,7 +103,9 @@ TEST(SelectWhere, NamesColumnAndWhatWasExpected) {
   EXPECT_THAT(message_of("z = 3"), HasSubstr("column 3: expected '=='"));
   EXPECT_THAT(message_of("0 < z < 3"), HasSubstr("comparisons do not chain"));
   EXPECT_THAT(message_of("z && x > 1"), HasSubstr("left of && is a number"));
-  EXPECT_THAT(message_of("species == Si"), HasSubstr("text is written in quotes"));
+  EXPECT_THAT(message_of("species == Si"),
+              HasSubstr("column 12: unknown property 'Si'; text is written in quotes"));
+  EXPECT_THAT(message_of("x == 'Si'"), HasSubstr("column 3: cannot compare a number with text"));
   EXPECT_THAT(message_of("species < 'Si'"), HasSubstr("expected numbers"));
   EXPECT_THAT(message_of("species == 'Si"), HasSubstr("closing '"));
   EXPECT_THAT(message_of("-species == 3"), HasSubstr("expected a number"));
@@ -120,6 +122,14 @@ TEST(SelectWhere, NamesTheNearestProperty) {
   EXPECT_EQ(message_of("x > 1 && chrage > 0"),
             "expression \"x > 1 && chrage > 0\", column 10: unknown property 'chrage'; did you "
             "mean 'charge'?");
+  for (const std::string wrong :
+       {"specis == 'Si'", "specis < 'Si'", "specis == species", "`specis` != 'Si'"}) {
+    EXPECT_THAT(message_of(wrong),
+                HasSubstr("column 1: unknown property 'specis'; did you mean 'species'?"));
+  }
+  EXPECT_EQ(message_of("'Si' == specis"),
+            "expression \"'Si' == specis\", column 9: unknown property 'specis'; did you mean "
+            "'species'?");
   ParticleSet bare = five_particles();
   bare.ids.clear();
   bare.species.clear();
@@ -130,6 +140,12 @@ TEST(SelectWhere, NamesTheNearestProperty) {
 TEST(CheckExpression, NeedsNoParticles) {
   EXPECT_NO_THROW(check_expression("whatever > 3"));
   EXPECT_THROW(check_expression("whatever >"), Error);
+  // Whether a name is known, and holds a text, is seen with the particles.
+  EXPECT_NO_THROW(check_expression("specis == 'Si'"));
+  EXPECT_THROW(check_expression("specis < 'Si'"), Error);
+  EXPECT_THROW(check_expression("specis == (z > 3)"), Error);
+  EXPECT_THROW(check_expression("(specis == 'Si') > 3"), Error);
+  EXPECT_THROW(check_expression("'Si' == 3"), Error);
 }
 
 TEST(CheckExpression, NestingIsLimitedNotFatal) {

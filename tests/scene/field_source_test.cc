@@ -147,6 +147,9 @@ TEST(MakeFieldSources, RefusesFieldsWithoutParticles) {
   field.select.expression = "x > 10";
   EXPECT_EQ(message_of([&] { make_field_source(silica(), field, {}, warnings); }),
             "field 'f' selects none of the 4 particles");
+  field.select.expression = "species == 'Si' && species == \"Xe\"";
+  EXPECT_EQ(message_of([&] { make_field_source(silica(), field, {}, warnings); }),
+            "field 'f' selects none of the 4 particles; unknown species 'Xe'; there are: Si, O");
   EXPECT_THAT(message_of([&] { make_field_source(ParticleSet{}, {}, {}, warnings); }),
               HasSubstr("no particles"));
   field.select = {};
