@@ -12,8 +12,16 @@
 namespace motes {
 
 Scene open_scene(const std::filesystem::path& path) {
-  if (is_scene_file(path)) return read_scene(path);
   Scene scene;
+  if (is_scene_file(path)) {
+    scene = read_scene(path);
+    std::error_code error;
+    if (!std::filesystem::exists(scene.data_path, error) && !error) {
+      throw Error(path, fmt::format("data.path: {}: there is no such file",
+                                    printable(scene.data_path.string(), 4096)));
+    }
+    return scene;
+  }
   scene.data_path = path;
   return scene;
 }

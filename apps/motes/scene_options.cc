@@ -168,12 +168,14 @@ SceneChanges::Change read_background(const std::string& text) {
   // A # begins a comment in the shell, so it may be left out.
   if (!color) color = color_from_text("#" + text);
   const auto linear = triple_in(text);
-  if (!color && linear && std::min({(*linear)[0], (*linear)[1], (*linear)[2]}) >= 0) {
+  if (linear && std::all_of(linear->begin(), linear->end(),
+                            [](double channel) { return channel >= 0 && channel <= 1; })) {
     color = {static_cast<float>((*linear)[0]), static_cast<float>((*linear)[1]),
              static_cast<float>((*linear)[2])};
   }
   if (!color) {
-    bad_value("--background", "black, white, rrggbb (sRGB) or r,g,b (linear, from 0)", text);
+    bad_value("--background", "black, white, '#rrggbb' (sRGB) or r,g,b (linear, each in [0, 1])",
+              text);
   }
   return [color = *color](Scene& scene) { scene.render.background = color; };
 }
@@ -215,7 +217,10 @@ void add_camera_options(CLI::App& command, SceneChanges& changes) {
              [](Scene& s, const Vector3d& v) { s.target = Point3d(v); });
   add_triple(command, changes, "--up",
              "what is up in the picture (default: y, or z for a side view)",
-             [](Scene& s, const Vector3d& v) { s.up = v; });
+             [](Scene& s, const Vector3d& v) {
+               if (!(length(v) > 0)) throw Error("--up: a direction must not be zero");
+               s.up = v;
+             });
   add_number(command, changes, "--fov", "DEGREES", "vertical field of view (default: 45)", angle,
              [](Scene& s, double v) {
                s.fov_degrees = v;

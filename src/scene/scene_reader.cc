@@ -236,6 +236,9 @@ void read_kernel(const Value& value, Scene& scene) {
 }
 
 Lighting read_lighting(const Value& value) {
+  if (value.raw().is_boolean()) {
+    value.expected(fmt::format("an object such as {{\"enabled\": {}}}", value.boolean()));
+  }
   Lighting lighting;
   value.check_keys({"enabled", "ambient", "diffuse", "specular", "shininess", "direction"});
   value.with("enabled", [&](const Value& v) { lighting.enabled = v.boolean(); });
@@ -266,7 +269,12 @@ void read_render(const Value& value, RenderSettings& render) {
     render.termination_opacity = v.number();
   });
   value.with("lighting", [&](const Value& v) { render.lighting = read_lighting(v); });
-  value.with("background", [&](const Value& v) { render.background = v.color(); });
+  value.with("background", [&](const Value& v) {
+    const Color color = render.background = v.color();
+    if (std::max({color.r, color.g, color.b}) > 1) {
+      v.expected("\"black\", \"white\", \"#rrggbb\" (sRGB) or [r, g, b] (linear, each in [0, 1])");
+    }
+  });
   value.with("engine", [&](const Value& v) {
     try {
       render.engine = engine_from_name(v.text("the name of an engine"));

@@ -112,7 +112,8 @@ TEST_F(CommandLine, AWrongCommandLineIsStatus2) {
                                 "--transfer-function virids",
                                 "--background blue",
                                 "--background 12345",
-                                "--background 1,2,-3",
+                                "--background 0,0.5,-1",
+                                "--background 128,128,128",
                                 "--engine cells",
                                 "--engine fast",
                                 "--lighting --no-lighting",
@@ -123,6 +124,15 @@ TEST_F(CommandLine, AWrongCommandLineIsStatus2) {
     failure("render a.xyz -o a.png " + bad, 2);
   }
   EXPECT_FALSE(workspace_.exists("a.png"));
+}
+
+TEST_F(CommandLine, ABackgroundIsSrgbOrLinear) {
+  EXPECT_EQ(failure("render a.xyz -o a.png --background 128,128,128", 2),
+            "motes: error: --background: expected black, white, '#rrggbb' (sRGB) or r,g,b (linear, "
+            "each in [0, 1]), found '128,128,128' (see motes render --help)\n");
+  for (const std::string good : {"black", "'#808080'", "808080", "0.2,0,1"}) {
+    succeed("render a.xyz -o a.png --size 8x8 --background " + good);
+  }
 }
 
 TEST_F(CommandLine, WrongNamesAreHelpedWithTheNearest) {
@@ -282,6 +292,11 @@ TEST_F(CommandLine, ASceneWithMistakesNamesTheKey) {
   workspace_.write("s.json", R"({"version": 1, "data": {"path": "a.xyz"}, "rendr": {}})");
   EXPECT_THAT(failure("render s.json -o a.png", 1),
               HasSubstr("s.json: unknown key 'rendr'; did you mean 'render'?"));
+  workspace_.write("s.json", R"({"version": 1, "data": {"path": "x.xyz"}})");
+  for (const std::string command : {"info s.json", "render s.json -o a.png"}) {
+    EXPECT_EQ(failure(command, 1),
+              "motes: error: s.json: data.path: x.xyz: there is no such file\n");
+  }
   workspace_.write("s.json", "{\"version\": 1,\n\"data\": }");
   EXPECT_THAT(failure("render s.json -o a.png", 1), HasSubstr("s.json:2: "));
 }
@@ -327,6 +342,9 @@ TEST_F(CommandLine, MistakesOfOptionsThatTheDataShowNameTheOption) {
   const std::string start = "motes: error: ";
   EXPECT_THAT(message("--eye 0,9,0 --target 0,0,0 --up 0,1,0"),
               StartsWith(start + "--up: is parallel"));
+  for (const std::string others : {"", " --eye 0,9,0", " --eye 0,9,0 --target 0,0,0"}) {
+    EXPECT_EQ(message("--up 0,0,0" + others), start + "--up: a direction must not be zero\n");
+  }
   EXPECT_THAT(message("--radius q"), StartsWith(start + "--radius: unknown property 'q'"));
   EXPECT_THAT(message("--step-size 1e-12"), StartsWith(start + "--step-size: 1e-12 takes "));
   EXPECT_THAT(message("--eye 0,0,1e30"), StartsWith(start + "--eye: is 1e+30 away"));

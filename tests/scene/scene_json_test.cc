@@ -218,7 +218,12 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{R"("render": {"lighting": {"shininess": -1}})", "render.lighting.shininess: exp"},
         Refusal{R"("render": {"lighting": {"direction": [0, 0, 0]}})",
                 "render.lighting.direction: a direction must not be zero"},
+        Refusal{R"("render": {"lighting": false})",
+                "render.lighting: expected an object such as {\"enabled\": false}, found false"},
         Refusal{R"("render": {"background": "blakc"})", "render.background: expected a colour"},
+        Refusal{R"("render": {"background": [0.5, 128, 0]})",
+                "render.background: expected \"black\", \"white\", \"#rrggbb\" (sRGB) or [r, g, b] "
+                "(linear, each in [0, 1])"},
         Refusal{R"("render": {"engine": "cells"})",
                 "render.engine: the engine 'cells' is not built yet"},
         Refusal{R"("render": {"engine": "swep"})",
@@ -321,7 +326,8 @@ RC_GTEST_PROP(SceneToJson, ReadsBackEqual, ()) {
   scene.render.termination_opacity = random_double(1, 8);
   scene.render.lighting.direction = maybe(random_vector);
   scene.render.lighting.enabled = *rc::gen::arbitrary<bool>();
-  scene.render.background = random_color();
+  scene.render.background = color_from_srgb(*rc::gen::inRange(0u, 0x1000000u));
+  if (*rc::gen::arbitrary<bool>()) scene.render.background.g = 1 / 3.0f;
   scene.render.engine = *rc::gen::element(Engine::sweep, Engine::coherent, Engine::direct);
 
   const std::string text = scene_to_json(scene, "/data/scenes");
