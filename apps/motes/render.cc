@@ -16,6 +16,7 @@
 #include "image/write_image.h"
 #include "motes/commands.h"
 #include "motes/input.h"
+#include "motes/picture_warnings.h"
 #include "motes/scene_options.h"
 #include "render/render_tile.h"
 #include "render/renderer.h"
@@ -84,20 +85,6 @@ Framebuffer render_frames(const Renderer& renderer, const ResolvedScene& scene,
   return image;
 }
 
-/// A picture without any opacity is seldom what was meant.
-void warn_of_empty_picture(const Framebuffer& image, const Bounds3d& data,
-                           const std::string& length_unit, Console& console) {
-  const std::vector<float>& rgba = image.rgba;
-  for (std::size_t i = 3; i < rgba.size(); i += 4) {
-    if (rgba[i] > 0) return;
-  }
-  console.warnings().add(fmt::format(
-      "nothing is in view; the data span x {:.4g} to {:.4g}, y {:.4g} to {:.4g}, z {:.4g} to "
-      "{:.4g}{}",
-      data.min.x, data.max.x, data.min.y, data.max.y, data.min.z, data.max.z,
-      length_unit == "unknown" ? "" : " " + length_unit));
-}
-
 void replace_missing_engine(Scene& scene, Console& console) {
   if (scene.render.engine != Engine::sweep) return;
   scene.render.engine = Engine::coherent;
@@ -129,14 +116,12 @@ void run(const Options& options) {
   Statistics statistics;
   std::optional<Renderer> renderer;
   ResolvedScene resolved;
-  Bounds3d bounds;
-  std::string length_unit;
+  DataExtent extent;
   {
     // The particles as they were read are gone before the first frame: only kernels stay.
     const Input input = read_particles(scene, console);
     statistics.read_ms = input.read_ms;
-    bounds = input.particles.bounds();
-    length_unit = input.particles.length_unit;
+    extent = {input.particles.bounds(), input.particles.length_unit};
     with_place(options.path, options.changes, [&] {
       color_by_species(scene, input.particles);
       const auto fields = expand_fields(scene, input.particles);
@@ -148,6 +133,8 @@ void run(const Options& options) {
       resolved = resolve(scene, input.particles, fields, sources, renderer->kernels(), &console);
     });
   }
+  const bool between_samples =
+      warn_of_large_steps(renderer->kernels(), resolved.step_size, console.warnings());
   statistics.build_ms = renderer->build_ms();
   statistics.particles = renderer->kernels().size();
   statistics.particle_bytes = renderer->kernels().particle_bytes();
@@ -156,7 +143,8 @@ void run(const Options& options) {
   const Framebuffer image = with_place(options.path, options.changes, [&] {
     return render_frames(*renderer, resolved, options, console, statistics);
   });
-  warn_of_empty_picture(image, bounds, length_unit, console);
+  warn_of_empty_picture(image, renderer->kernels(), resolved.camera, extent, between_samples,
+                        console.warnings());
   write_image(output, format, image, scene.render.termination_opacity, scene.render.background);
   output.commit();
   if (stats) {

@@ -388,6 +388,35 @@ TEST_F(CommandLine, ACameraThatLooksAtNothingGivesAnEmptyPicture) {
   for (const float v : pixels("a.npy")) EXPECT_EQ(v, 0);
 }
 
+TEST_F(CommandLine, APictureThatIsAllButEmptyIsExplained) {
+  const auto warning = [this](const std::string& options) {
+    const Outcome outcome = run("render a.xyz -o a.png --size 16x16 " + options);
+    EXPECT_EQ(outcome.status, 0);
+    return outcome.err;
+  };
+  workspace_.write("t.json",
+                   R"({"points": [{"value": 1, "color": "#ff0000", "extinction": 1e-4}]})");
+  EXPECT_THAT(warning("--transfer-function t.json"),
+              testing::MatchesRegex("motes: warning: the particles in view are too transparent to "
+                                    "be seen \\(largest opacity [0-9.e-]+\\); expected a larger "
+                                    "extinction in the transfer function.*\n"));
+  const std::string away = " --eye 0,0,50 --target 0,0,99";
+  EXPECT_THAT(warning("--transfer-function t.json" + away), HasSubstr("nothing is in view"));
+  EXPECT_THAT(warning("--orthographic 5 --target 0,50,0 --eye 0,50,9"),
+              HasSubstr("nothing is in view"));
+  // The largest radius is that of silicon, 1.11.
+  const std::string steps =
+      "is larger than the kernels (support diameter 4.44): most of them fall between samples; "
+      "expected 1.11 or less, or larger radii\n";
+  EXPECT_EQ(warning("--step-size 100"), "motes: warning: step_size 100 " + steps);
+  EXPECT_EQ(warning("--step-size 4.5"), "motes: warning: step_size 4.5 " + steps);
+  EXPECT_EQ(warning("--step-size 4.4"), "");
+  EXPECT_THAT(warning("--radius 0.0001"),
+              testing::AllOf(HasSubstr("is larger than the kernels (support diameter 0.0004)"),
+                             testing::Not(HasSubstr("in view"))));
+  EXPECT_THAT(warning("--step-size 100" + away), HasSubstr("nothing is in view"));
+}
+
 TEST_F(CommandLine, ParticlesThatCannotBeDrawnAreCounted) {
   workspace_.write("nan.xyz", "3\n\nSi 0 0 0\nSi nan 0 0\nSi 1 inf 0\n");
   const Outcome outcome = run("render nan.xyz -o a.png --size 16x16");

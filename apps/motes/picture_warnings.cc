@@ -1,0 +1,80 @@
+// Finds out why a picture is empty.
+#include "motes/picture_warnings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace motes {
+namespace {
+
+constexpr float least_visible = 1.0f / 255;
+
+/// Whether a sphere about each kernel's centre, as large as its support, reaches into the view.
+bool any_in_view(const KernelSet& kernels, const Camera& camera, double aspect) {
+  const CameraAxes axes = camera_axes(camera);
+  const bool parallel = camera.orthographic_height.has_value();
+  const double tan_y = parallel ? *camera.orthographic_height / 2
+                                : std::tan(camera.fov_degrees * std::numbers::pi / 360);
+  // Whether the sphere reaches over the edge of the image that is `tangent` from its middle.
+  const auto inside = [&](double across, double depth, double radius, double tangent) {
+    if (parallel) return std::abs(across) - radius <= tangent;
+    return std::abs(across) - radius * std::sqrt(1 + tangent * tangent) <= tangent * depth;
+  };
+  for (std::size_t i = 0; i < kernels.size(); ++i) {
+    const std::size_t field = kernels.field.empty() ? 0 : kernels.field[i];
+    const double radius =
+        kernels.fields[field].kernel.support_factor * kernels.radius[i] / kernels.length_scale;
+    const Vector3d from_origin{kernels.x[i], kernels.y[i], kernels.z[i]};
+    const Vector3d v = kernels.origin + from_origin / kernels.length_scale - camera.eye;
+    const double depth = dot(v, axes.forward);
+    if (depth + radius > 0 && inside(dot(v, axes.x), depth, radius, tan_y * aspect) &&
+        inside(dot(v, axes.y), depth, radius, tan_y)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+bool warn_of_large_steps(const KernelSet& kernels, double step_size, Warnings& warnings) {
+  double radius = 0, support_radius = 0;
+  for (const FieldKernels& field : kernels.fields) {
+    radius = std::max(radius, field.max_radius);
+    support_radius = std::max(support_radius, field.kernel.support_factor * field.max_radius);
+  }
+  if (step_size <= 2 * support_radius) return false;
+  warnings.add(
+      fmt::format("step_size {:.4g} is larger than the kernels (support diameter {:.4g}): most of "
+                  "them fall between samples; expected {:.4g} or less, or larger radii",
+                  step_size, 2 * support_radius, std::min(radius, support_radius)));
+  return true;
+}
+
+void warn_of_empty_picture(const Framebuffer& image, const KernelSet& kernels, const Camera& camera,
+                           const DataExtent& data, bool between_samples, Warnings& warnings) {
+  float largest = 0;
+  for (std::size_t i = 3; i < image.rgba.size(); i += 4) {
+    largest = std::max(largest, image.rgba[i]);
+  }
+  if (largest >= least_visible) return;
+  if (any_in_view(kernels, camera, static_cast<double>(image.width) / image.height)) {
+    if (between_samples) return;
+    warnings.add(
+        fmt::format("the particles in view are too transparent to be seen (largest opacity "
+                    "{:.2g}); expected a larger extinction in the transfer function, or a range "
+                    "with the field's values in it",
+                    largest));
+    return;
+  }
+  warnings.add(fmt::format(
+      "nothing is in view; the data span x {:.4g} to {:.4g}, y {:.4g} to {:.4g}, z {:.4g} to "
+      "{:.4g}{}",
+      data.bounds.min.x, data.bounds.max.x, data.bounds.min.y, data.bounds.max.y, data.bounds.min.z,
+      data.bounds.max.z, data.length_unit == "unknown" ? "" : " " + data.length_unit));
+}
+
+}  // namespace motes
