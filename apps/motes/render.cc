@@ -10,6 +10,10 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
@@ -21,6 +25,7 @@
 #include "render/render_tile.h"
 #include "render/renderer.h"
 #include "render/resolve.h"
+#include "scene/fill_in.h"
 
 namespace motes {
 namespace {
@@ -37,7 +42,7 @@ Examples:
   motes render scene.json -o picture.exr --stats stats.json --repeat 5)";
 
 struct Options {
-  std::string path, output, stats;
+  std::string path, output, stats, saved_scene;
   int threads = 0, repeat = 1;
   SceneChanges changes;
 };
@@ -91,6 +96,30 @@ void replace_missing_engine(Scene& scene, Console& console) {
   console.warnings().add("the engine 'sweep' is not built yet; rendering with 'coherent'");
 }
 
+/// Options and the files that they name; a file may be "", none.
+using NamedFiles = std::vector<std::pair<std::string_view, std::filesystem::path>>;
+
+/// One name for all paths to a file; what cannot be looked at stays as it is.
+std::filesystem::path canonical_name(const std::filesystem::path& path) {
+  std::error_code error;
+  const std::filesystem::path canonical = weakly_canonical(path, error);
+  return error ? path : canonical;
+}
+
+/// No two outputs may be one file, and none may be the input.
+void refuse_same_file(const NamedFiles& outputs, const NamedFiles::value_type& input) {
+  for (auto second = outputs.begin(); second != outputs.end(); ++second) {
+    if (second->second.empty()) continue;
+    const auto refuse = [&](const NamedFiles::value_type& first) {
+      if (canonical_name(first.second) != canonical_name(second->second)) return;
+      throw Error(first.second, fmt::format("is both {} and {}; expected two different files",
+                                            first.first, second->first));
+    };
+    refuse(input);
+    std::for_each(outputs.begin(), second, refuse);
+  }
+}
+
 void run(const Options& options) {
   Console console;
   std::optional<tbb::global_control> limit;
@@ -102,15 +131,17 @@ void run(const Options& options) {
   // be written.
   instruction_set();
   const ImageFormat format = image_format(options.output);
-  if (!options.stats.empty() && std::filesystem::weakly_canonical(options.stats) ==
-                                    std::filesystem::weakly_canonical(options.output)) {
-    throw Error(options.output, "is both --output and --stats; expected two different files");
-  }
+  const NamedFiles outputs{{"--output", options.output},
+                           {"--stats", options.stats},
+                           {"--save-scene", options.saved_scene}};
+  refuse_same_file(outputs, {"FILE", options.path});
   AtomicFile output(options.output);
-  std::optional<AtomicFile> stats;
+  std::optional<AtomicFile> stats, saved_scene;
   if (!options.stats.empty()) stats.emplace(options.stats);
+  if (!options.saved_scene.empty()) saved_scene.emplace(options.saved_scene);
 
   Scene scene = open_scene(options.path);
+  refuse_same_file(outputs, {"data.path", scene.data_path});
   options.changes.apply(scene);
   replace_missing_engine(scene, console);
   Statistics statistics;
@@ -131,6 +162,11 @@ void run(const Options& options) {
       console.update("building the tree", 0);
       renderer.emplace(input.particles, sources);
       resolved = resolve(scene, input.particles, fields, sources, renderer->kernels(), &console);
+      if (saved_scene) {
+        const std::filesystem::path directory =
+            std::filesystem::path(options.saved_scene).parent_path();
+        saved_scene->write(scene_to_json(fill_in(scene, fields, sources, resolved), directory));
+      }
     });
   }
   const bool between_samples =
@@ -147,6 +183,7 @@ void run(const Options& options) {
                         console.warnings());
   write_image(output, format, image, scene.render.termination_opacity, scene.render.background);
   output.commit();
+  if (saved_scene) saved_scene->commit();
   if (stats) {
     stats->write(to_json(statistics));
     stats->commit();
@@ -190,6 +227,10 @@ void add_render_command(CLI::App& program) {
   add_field_options(*command, options->changes);
   add_data_options(*command, options->changes);
   add_count(*command, "--threads", options->threads, 4096, "threads to use (default: all cores)");
+  command
+      ->add_option("--save-scene", options->saved_scene,
+                   "write the scene with all that was fitted, to change and render again")
+      ->type_name("SCENE.json");
   command->add_option("--stats", options->stats, "write times and counts as JSON")
       ->type_name("STATS.json");
   add_count(*command, "--repeat", options->repeat, 1000000,

@@ -357,6 +357,50 @@ TEST_F(CommandLine, MistakesOfOptionsThatTheDataShowNameTheOption) {
   EXPECT_THAT(outcome.err, StartsWith(start + "MOTES_TARGET=no: "));
 }
 
+TEST_F(CommandLine, ASavedSceneGivesTheSamePicture) {
+  // A field a species; a colour map over all; values of both signs in a selection; parallel rays.
+  workspace_.write("signs.json", R"({"version": 1, "data": {"path": "a.xyz"}, "fields": [
+      {"select": {"expression": "x < 3"}, "weight": "q", "radius": "r"},
+      {"name": "red", "transfer_function": {"points": [
+          {"value": 0.5, "color": [1, 0.1, 0], "extinction": 0.7}]}}]})");
+  workspace_.write("a.xyz",
+                   "3\nProperties=species:S:1:pos:R:3:q:R:1:r:R:1\n"
+                   "Si 0 0 0 1 1\nO 2 0 0 -1 1.5\nSi 4 0 0 2 1\n");
+  std::filesystem::create_directory(workspace_.path("out"));
+  for (const std::string arguments :
+       {"a.xyz", "a.xyz --transfer-function magma --no-lighting --background 0.1,0.2,0.3",
+        "signs.json --step-size 0.3", "one.xyz --orthographic 7 --up 1,1,0 --engine direct",
+        "a.xyz --weight q --support-factor 3 --kernel-scale 2 --termination-opacity 0.5"}) {
+    succeed("render " + arguments + " -o first.npy --size 48x32 --save-scene out/s.json");
+    succeed("render out/s.json -o second.npy --save-scene out/again.json");
+    EXPECT_EQ(workspace_.read("first.npy"), workspace_.read("second.npy")) << arguments;
+    EXPECT_EQ(workspace_.read("out/s.json"), workspace_.read("out/again.json")) << arguments;
+  }
+  const auto scene = nlohmann::json::parse(workspace_.read("out/s.json"));
+  EXPECT_EQ(scene["data"]["path"], "../a.xyz");
+  EXPECT_EQ(scene["render"]["size"], nlohmann::json::parse("[48, 32]"));
+}
+
+TEST_F(CommandLine, ASavedSceneHarmsNoOtherFile) {
+  workspace_.write("s.json", R"({"version": 1, "data": {"path": "a.xyz"}})");
+  const std::string start = "motes: error: ", end = "; expected two different files\n";
+  EXPECT_EQ(failure("render a.xyz -o a.png --save-scene ./a.xyz", 1),
+            start + "a.xyz: is both FILE and --save-scene" + end);
+  EXPECT_EQ(failure("render s.json -o a.png --save-scene s.json", 1),
+            start + "s.json: is both FILE and --save-scene" + end);
+  EXPECT_EQ(failure("render s.json -o a.png --save-scene a.xyz", 1),
+            start + "a.xyz: is both data.path and --save-scene" + end);
+  EXPECT_EQ(failure("render a.xyz -o a.png --save-scene a.png", 1),
+            start + "a.png: is both --output and --save-scene" + end);
+  EXPECT_EQ(failure("render a.xyz -o a.png --stats b --save-scene b", 1),
+            start + "b: is both --stats and --save-scene" + end);
+  EXPECT_EQ(workspace_.read("a.xyz"), three_atoms);
+  workspace_.write("b.json", "old");
+  failure("render a.xyz -o a.png --save-scene b.json --radius q", 1);
+  EXPECT_EQ(workspace_.read("b.json"), "old");
+  EXPECT_THAT(failure("render missing.xyz -o a.png --save-scene no/s.json", 1), HasSubstr("no/"));
+}
+
 TEST_F(CommandLine, ATransferFunctionMayBeAFile) {
   workspace_.write("t.json", R"({"points": [{"value": 0, "color": "#ff0000", "extinction": 0},
                                             {"value": 1, "color": "#ff0000", "extinction": 9}]})");

@@ -20,6 +20,7 @@ class Workspace {
   Outcome run(const std::string& arguments) const;
   void write(const std::string& name, const std::string& content) const;
   std::string read(const std::string& name) const;
+  std::filesystem::path path(const std::string& name) const { return directory_ / name; }
   bool exists(const std::string& name) const { return std::filesystem::exists(directory_ / name); }
   /// Number of files there, the captured output left out.
   std::size_t num_files() const;
