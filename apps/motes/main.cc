@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <new>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/error.h"
@@ -44,6 +45,20 @@ std::string first_unknown(const CLI::App& program, int argc, char** argv) {
   return it == argv + argc ? "" : *it;
 }
 
+/// What people look for under other names.
+struct Hint {
+  std::vector<std::string_view> words;
+  std::string_view hint;
+};
+const Hint hints[] = {
+    {{"color", "colour", "colors", "colours", "colormap", "colourmap", "color-map", "colour-map",
+      "cmap", "palette", "opacity", "extinction"},
+     "colours and opacity are --transfer-function"},
+    {{"species", "element", "elements", "select", "selection", "filter", "where", "field",
+      "fields"},
+     "selections are made in a scene file, docs/scene.md"},
+};
+
 std::string describe_unknown_option(const CLI::App& command, const std::string& argument) {
   const std::string option = argument.substr(0, argument.find('='));
   std::vector<std::string> known;
@@ -51,8 +66,16 @@ std::string describe_unknown_option(const CLI::App& command, const std::string& 
     known.insert(known.end(), each->get_lnames().begin(), each->get_lnames().end());
   }
   const auto letters = std::min(option.find_first_not_of('-'), option.size());
-  const std::string nearest = motes::nearest_word(option.substr(letters), known);
+  const std::string word = option.substr(letters);
   const std::string start = fmt::format("{}: unknown option", motes::printable(option));
+  if (command.get_option_no_throw("--transfer-function") != nullptr) {
+    for (const auto& [words, hint] : hints) {
+      if (std::find(words.begin(), words.end(), word) != words.end()) {
+        return fmt::format("{}; {}", start, hint);
+      }
+    }
+  }
+  const std::string nearest = motes::nearest_word(word, known);
   return nearest.empty() ? start : fmt::format("{}; did you mean --{}?", start, nearest);
 }
 
@@ -89,6 +112,19 @@ int report_parse_error(const CLI::App& program, const CLI::ParseError& error, in
                 2);
 }
 
+/// The arguments, where `motes` and `motes help [COMMAND]` stand for `motes [COMMAND] --help`.
+std::vector<char*> with_help(int argc, char** argv) {
+  static char help[] = "--help";
+  std::vector<char*> arguments(argv, argv + argc);
+  if (argc < 2) {
+    arguments.push_back(help);
+  } else if (argv[1] == std::string_view("help")) {
+    arguments.erase(arguments.begin() + 1);
+    arguments.push_back(help);
+  }
+  return arguments;
+}
+
 int run(int argc, char** argv) {
   CLI::App program(
       "Volume pictures and measurements of particle data, straight from the particles.", "motes");
@@ -114,7 +150,8 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
-    return run(argc, argv);
+    std::vector<char*> arguments = with_help(argc, argv);
+    return run(static_cast<int>(arguments.size()), arguments.data());
   } catch (const motes::Error& error) {
     return report(error.what(), 1);
   } catch (const std::bad_alloc&) {

@@ -39,7 +39,12 @@ Examples:
   motes render silica.lammpstrj -o soft.png --types 1=Si,2=O --radius 1.2
   motes render box.hdf5 -o box.png --transfer-function magma --no-lighting --size 1920x1080
   motes render run.xyz.gz -o frame7.png --frame 7 --eye 0,0,-80 --target 0,0,0 --fov 30
-  motes render scene.json -o picture.exr --stats stats.json --repeat 5)";
+  motes render scene.json -o picture.exr --stats stats.json --repeat 5
+  motes render silica.lammpstrj -o silica.png --save-scene silica.json
+
+Reads LAMMPS dumps and data, XYZ, PDB, mmCIF, CIF, GRO, HDF5 of GADGET, AREPO, SWIFT, GIZMO and
+Phantom, H5MD, CSV and NPY, also compressed with gz, bz2, xz or zst.
+MOTES_TARGET=SSE4, AVX2 or AVX-512 in the environment forces an instruction set.)";
 
 struct Options {
   std::string path, output, stats, saved_scene;

@@ -70,10 +70,16 @@ TEST_F(CommandLine, HelpTeachesWithExamples) {
     EXPECT_THAT(outcome.out, HasSubstr("motes " + command)) << command;
   }
   EXPECT_THAT(run("--version").out, StartsWith("motes "));
+  EXPECT_EQ(run("").out, run("--help").out);
+  EXPECT_EQ(run("").status, 0);
+  EXPECT_EQ(run("help").out, run("--help").out);
+  EXPECT_EQ(run("help render").out, run("render --help").out);
+  const std::string render = run("render --help").out;
+  EXPECT_THAT(render, HasSubstr("MOTES_TARGET=SSE4, AVX2 or AVX-512"));
+  EXPECT_THAT(render, HasSubstr("Reads LAMMPS"));
 }
 
 TEST_F(CommandLine, AWrongCommandLineIsStatus2) {
-  EXPECT_THAT(failure("", 2), HasSubstr("motes --help"));
   failure("paint a.xyz", 2);
   failure("render", 2);
   EXPECT_THAT(failure("render a.xyz", 2), HasSubstr("--output"));
@@ -152,8 +158,17 @@ TEST_F(CommandLine, MisspeltOptionsAndCommandsAreHelped) {
               "motes: error: --trasfer-function: unknown option; did you mean "
               "--transfer-function? (see motes render --help)\n");
   }
-  EXPECT_EQ(failure("render a.xyz -o a.png --colour red", 2),
-            "motes: error: --colour: unknown option (see motes render --help)\n");
+  EXPECT_EQ(failure("render a.xyz -o a.png --zzz red", 2),
+            "motes: error: --zzz: unknown option (see motes render --help)\n");
+  for (const std::string option : {"--color", "--colormap", "--colour=red"}) {
+    EXPECT_THAT(failure("render a.xyz -o a.png " + option, 2),
+                HasSubstr("unknown option; colours and opacity are --transfer-function (see"));
+  }
+  for (const std::string option : {"--species Si", "--select x"}) {
+    EXPECT_THAT(
+        failure("render a.xyz -o a.png " + option, 2),
+        HasSubstr("unknown option; selections are made in a scene file, docs/scene.md (see"));
+  }
   EXPECT_EQ(failure("info a.xyz one.xyz", 2),
             "motes: error: unexpected argument 'one.xyz' (see motes info --help)\n");
   EXPECT_EQ(failure("rendr a.xyz -o a.png", 2),
