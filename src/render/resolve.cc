@@ -32,7 +32,7 @@ ResolvedScene resolve(const Scene& scene, const ParticleSet& particles,
     profiles =
         sample_view(kernels, resolved.camera, scene.render.width, scene.render.height, progress);
   }
-  const double opacity = fit_opacity(profiles);
+  const double opacity = fit_opacity(profiles, scene.render.background);
   for (std::size_t f = 0; f < fields.size(); ++f) {
     resolved.transfer_functions.push_back(fit_transfer_function(
         fields[f].transfer_function, sources[f].species_color, profiles[f], opacity));

@@ -18,14 +18,14 @@ constexpr std::size_t radii_looked_at = 65536;  // of one field: enough for a qu
 // Where values of one sign span more decades than this, their scale is logarithmic.
 constexpr double log_decades = 2.5;
 // Of the rays that meet matter, on average: neither fog nor block. Several fields share it.
-constexpr double target_opacity = 0.7;
+constexpr double target_over_black = 0.7, target_over_white = 0.9;  // white bleaches
 // Where values span decades, what is dense lies behind much that is not. So the extinction rises
 // with this power of the place in the range, and this much of the light of the densest place on a
 // ray comes through what is in front of it, unless so little opacity is left that all is faint.
 constexpr double log_steepness = 1.5;
 constexpr double light_of_peaks = 0.6;
-constexpr double least_opacity = 0.3 / target_opacity;  // of the opacity aimed at
-constexpr int log_points = 9;                           // of one colour
+constexpr double least_opacity = 0.3 / 0.7;  // of the opacity aimed at
+constexpr int log_points = 9;                // of one colour
 constexpr float paleness = 0.35f;  // of a species' colour at the largest values: shape shows
 constexpr const char* default_map = "viridis";
 
@@ -36,6 +36,9 @@ double quantile(std::vector<float>& values, double fraction) {
   std::nth_element(values.begin(), at, values.end());
   return *at;
 }
+
+/// Relative luminance of linear RGB (ITU-R BT.709).
+double luminance(const Color& c) { return 0.2126 * c.r + 0.7152 * c.g + 0.0722 * c.b; }
 
 /// Calls `look` with radii of the field's particles: all, or evenly many.
 template <class F>
@@ -199,8 +202,10 @@ double default_step_size(const std::vector<FieldSource>& fields, const Bounds3d&
   return std::max(0.5 * radius, length(box.diagonal()) / max_samples);
 }
 
-double fit_opacity(const std::vector<RayProfiles>& profiles) {
-  if (profiles.size() < 2) return target_opacity;
+double fit_opacity(const std::vector<RayProfiles>& profiles, const Color& background) {
+  const double target =
+      std::lerp(target_over_black, target_over_white, std::min(luminance(background), 1.0));
+  if (profiles.size() < 2) return target;
   // How many rays meet 1, 2, ... fields.
   std::vector<double> num_rays(profiles.size());
   double sum = 0;
@@ -216,14 +221,14 @@ double fit_opacity(const std::vector<RayProfiles>& profiles) {
     ++num_rays[met - 1];
     ++sum;
   }
-  double low = 0, high = target_opacity;
+  double low = 0, high = target;
   for (int step = 0; step < 30; ++step) {
     const double opacity = (low + high) / 2;
     double total = 0;
     for (std::size_t met = 0; met < num_rays.size(); ++met) {
       total += num_rays[met] * (1 - std::pow(1 - opacity, static_cast<double>(met + 1)));
     }
-    (total < target_opacity * sum ? low : high) = opacity;
+    (total < target * sum ? low : high) = opacity;
   }
   return high;
 }

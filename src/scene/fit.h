@@ -42,9 +42,9 @@ struct RayProfiles {
 };
 
 /// How opaque each of several fields should make the rays that meet it, so that rays that meet
-/// matter come to the opacity of a good picture (0.7 on average). `profiles`: one a field, of the
-/// same rays.
-double fit_opacity(const std::vector<RayProfiles>& profiles);
+/// matter come to the opacity of a good picture: on average 0.7 over black and 0.9 over white,
+/// which would bleach them. `profiles`: one a field, of the same rays.
+double fit_opacity(const std::vector<RayProfiles>& profiles, const Color& background);
 
 /// The transfer function that `wish` (or nothing: a default) comes to in this view. What it leaves
 /// open:

@@ -53,6 +53,15 @@ TEST_F(Resolve, FillsInWhatIsOpen) {
   EXPECT_GT(points.back().extinction, 0);
 }
 
+TEST_F(Resolve, MakesFieldsMoreOpaqueOverWhite) {
+  const auto fitted = [&] {
+    return resolve_scene().transfer_functions[0].points.back().extinction;
+  };
+  const double over_black = fitted();
+  scene_.render.background = {1, 1, 1};
+  EXPECT_GT(fitted(), over_black);
+}
+
 TEST_F(Resolve, KeepsWhatTheSceneSaysWithoutLookingAtTheData) {
   const TransferFunction function{{{1, {1, 0, 0}, 2}, {5, {0, 1, 0}, 3}}, false};
   fields_[0].transfer_function = function;

@@ -255,17 +255,27 @@ TEST(FitTransferFunction, IsNeitherFogNorBlockWhateverTheUnits) {
   }
 }
 
+constexpr Color black{0, 0, 0}, white{1, 1, 1};
+
+TEST(FitOpacity, IsHigherOverBrightBackgrounds) {
+  const RayProfiles wave = profiles_of(300, 200, 0.1, wavy);
+  EXPECT_NEAR(fit_opacity({wave}, white), 0.9, 1e-6);
+  EXPECT_NEAR(fit_opacity({wave}, {0.5f, 0.5f, 0.5f}), 0.8, 1e-6);
+  EXPECT_NEAR(fit_opacity({wave}, {9, 9, 9}), 0.9, 1e-6);
+  EXPECT_NEAR(1 - std::pow(1 - fit_opacity({wave, wave}, white), 2), 0.9, 1e-6);
+}
+
 TEST(FitOpacity, SharesRaysAmongTheFieldsThatTheyMeet) {
   const RayProfiles wave = profiles_of(300, 200, 0.1, wavy);
-  EXPECT_EQ(fit_opacity({wave}), 0.7);
-  EXPECT_NEAR(1 - std::pow(1 - fit_opacity({wave, wave, wave, wave}), 4), 0.7, 1e-6);
+  EXPECT_EQ(fit_opacity({wave}, black), 0.7);
+  EXPECT_NEAR(1 - std::pow(1 - fit_opacity({wave, wave, wave, wave}, black), 4), 0.7, 1e-6);
   // Fields on rays of their own take nothing from each other.
   const auto only = [](std::size_t parity) {
     return profiles_of(300, 200, 0.1, [parity](std::size_t r, std::size_t) {
       return r % 2 == parity ? 1.0 : 0.0;
     });
   };
-  EXPECT_NEAR(fit_opacity({only(0), only(1)}), 0.7, 1e-6);
+  EXPECT_NEAR(fit_opacity({only(0), only(1)}, black), 0.7, 1e-6);
 }
 
 TEST(FitTransferFunction, IsLogarithmicWhereValuesSpanDecades) {
