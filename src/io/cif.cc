@@ -38,7 +38,10 @@ namespace cif = gemmi::cif;
   message.remove_prefix(source.size());
   const auto line = cut_number();
   cut_number();
-  const std::string what = printable(trim(message), 200);
+  std::string what = printable(trim(message), 200);
+  if (what.starts_with("Wrong number of values")) {
+    what += "; expected whole rows, with a value for each of its tags";
+  }
   if (line && *line > 0) throw Error(path, static_cast<std::uint64_t>(*line), what);
   throw Error(path, what);
 }
@@ -265,9 +268,6 @@ std::unique_ptr<Trajectory> open_cif(const std::filesystem::path& path,
     if (options.warnings == nullptr) return;
     options.warnings->add(fmt::format("{}: {}", printable(path.string()), what));
   };
-  if (content.empty() || content.back() != '\n') {
-    warn("the last line has no end; it may be cut short");
-  }
   cif::Document document = parse(path, content);
   std::vector<ParticleSet> frames;
   bool macromolecule = false;
@@ -298,6 +298,8 @@ std::unique_ptr<Trajectory> open_cif(const std::filesystem::path& path,
   if (frames.empty()) {
     throw Error(path, "has no atoms; expected _atom_site with Cartn_x or fract_x, y and z");
   }
+  // Only now: where reading fails, its error says more.
+  if (content.back() != '\n') warn("the last line has no end; it may be cut short");
   return std::make_unique<InMemoryTrajectory>(macromolecule ? "mmCIF" : "CIF", path,
                                               std::move(frames));
 }

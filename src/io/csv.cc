@@ -240,10 +240,7 @@ std::unique_ptr<Trajectory> open_csv(const std::filesystem::path& path,
   }
   const char separator = find_separator(first_line(rest));
   const std::string original(content, 0, content.size() - rest.size());
-  if (!content.ends_with('\n') && options.warnings != nullptr) {
-    options.warnings->add(
-        fmt::format("{}: the last line has no end; it may be cut short", printable(path.string())));
-  }
+  const bool has_last_end = content.ends_with('\n');
   normalize(path, content, separator);
   const Opening opening = find_opening(path, original, content);
   if (!opening.names.empty() && opening.names.size() != opening.first_row.size()) {
@@ -256,6 +253,11 @@ std::unique_ptr<Trajectory> open_csv(const std::filesystem::path& path,
   parse_table(path, opening.rows, count_rows(opening.rows.text), RowWidth::exact, columns, options);
   std::vector<ParticleSet> frames;
   frames.push_back(make_particles(path, std::move(columns), roles, options));
+  // Only now: where reading fails, its error says more.
+  if (!has_last_end && options.warnings != nullptr) {
+    options.warnings->add(
+        fmt::format("{}: the last line has no end; it may be cut short", printable(path.string())));
+  }
   return std::make_unique<InMemoryTrajectory>("CSV", path, std::move(frames));
 }
 

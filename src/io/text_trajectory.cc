@@ -77,11 +77,13 @@ ParticleSet TextTrajectory::read_frame(std::size_t frame) {
   if (frame >= starts_.size()) throw_no_such_frame(path_, frame, starts_.size());
   source_.seek(starts_[frame]);
   const Frame found = find_frame();
+  ParticleSet particles = parse_frame(found.block);
+  // Only now: where reading fails, its error says more.
   const std::string_view text = found.block.text;
   if (!text.empty() && text.back() != '\n') {
     warn(Error(path_, found.end.line - 1, "the last line has no end; it may be cut short").what());
   }
-  return parse_frame(found.block);
+  return particles;
 }
 
 }  // namespace motes
