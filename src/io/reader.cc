@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <utility>
+#include <vector>
 
 #include "core/error.h"
 #include "io/bytes.h"
@@ -41,6 +43,47 @@ const Format* find_format(const std::filesystem::path& path, std::string_view he
   return nullptr;
 }
 
+/// A well-known format that is not read: users learn more from its name than from "unknown".
+struct ForeignFormat {
+  std::string_view name;
+  std::vector<std::pair<std::size_t, std::string_view>> marks;  ///< bytes at offsets; one is enough
+  std::vector<std::string_view> suffixes;
+};
+
+const std::vector<ForeignFormat>& foreign_formats() {
+  using std::string_view_literals::operator""sv;
+  static const std::vector<ForeignFormat> table{
+      {"GADGET binary", {{0, "\0\1\0\0"sv}, {0, "\0\0\1\0"sv}, {4, "HEAD"sv}}, {".gadget"}},
+      {"XTC", {{0, "\0\0\x07\xcb"sv}, {0, "\0\0\x07\xe7"sv}}, {".xtc"}},
+      {"TRR", {{0, "\0\0\x07\xc9"sv}}, {".trr"}},
+      {"DCD", {{4, "CORD"sv}, {8, "CORD"sv}}, {".dcd"}},
+      {"GSD", {{0, "\xdf\x65\xdf\x65\xdf\x65\xdf\x65"sv}}, {".gsd"}},
+      {"NetCDF", {{0, "CDF\1"sv}, {0, "CDF\2"sv}, {0, "CDF\5"sv}}, {}},
+      {"cube", {}, {".cube", ".cub"}},
+      {"POSCAR", {}, {"poscar", "contcar", ".vasp"}},
+      {"TIPSY", {}, {".tipsy", ".tbin"}},
+  };
+  return table;
+}
+
+const ForeignFormat* find_foreign_format(const std::filesystem::path& path, std::string_view head) {
+  const std::string name = bare_name(path);
+  const auto is_marked = [&](const auto& mark) {
+    return head.substr(std::min(mark.first, head.size())).starts_with(mark.second);
+  };
+  const auto is_named = [&](std::string_view suffix) { return name.ends_with(suffix); };
+  const auto& table = foreign_formats();
+  auto found = std::find_if(table.begin(), table.end(), [&](const ForeignFormat& format) {
+    return std::any_of(format.marks.begin(), format.marks.end(), is_marked);
+  });
+  if (found == table.end()) {
+    found = std::find_if(table.begin(), table.end(), [&](const ForeignFormat& format) {
+      return std::any_of(format.suffixes.begin(), format.suffixes.end(), is_named);
+    });
+  }
+  return found == table.end() ? nullptr : &*found;
+}
+
 std::string known_formats() {
   std::string list;
   for (const Format& format : formats()) {
@@ -58,6 +101,10 @@ std::unique_ptr<Trajectory> open_trajectory(const std::filesystem::path& path,
   if (head.empty()) throw Error(path, "is empty; expected particles");
   const Format* format = find_format(path, head);
   if (format == nullptr) {
+    if (const ForeignFormat* foreign = find_foreign_format(path, head)) {
+      throw Error(path, fmt::format("looks like {}, which Motes does not read; expected one of {}",
+                                    foreign->name, known_formats()));
+    }
     throw Error(path, fmt::format("has an unknown format; expected one of {}", known_formats()));
   }
   return format->open(path, options);

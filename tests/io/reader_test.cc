@@ -11,6 +11,7 @@
 namespace motes {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
@@ -22,6 +23,35 @@ TEST(OpenTrajectory, RefusesEmptyAndUnknownFiles) {
               ThrowsMessage<Error>(HasSubstr("unknown format; expected one of")));
   EXPECT_THAT([&] { open_trajectory("/no/such/file", {}); },
               ThrowsMessage<Error>(HasSubstr("there is no such file")));
+}
+
+TEST(OpenTrajectory, NamesWellKnownFormatsThatItDoesNotRead) {
+  using std::string_literals::operator""s;
+  for (const auto& [name, content, format] :
+       {std::tuple{"snapshot_000", "\0\1\0\0\0\0\0\0"s, "like GADGET binary, which"},
+        std::tuple{"snapshot_001", "\0\0\1\0\0\0\0\0"s, "like GADGET binary, which"},
+        std::tuple{"snapshot_002", "\x8\0\0\0HEAD"s, "like GADGET binary, which"},
+        std::tuple{"a.bin", "\0\0\x07\xcb\0\0"s, "like XTC, which"},
+        std::tuple{"a.bin", "T\0\0\0\0\0\0\0CORD"s, "like DCD, which"},
+        std::tuple{"a.bin", "CDF\2\0"s, "like NetCDF, which"},
+        std::tuple{"POSCAR", "silicon\n1.0\n"s, "like POSCAR, which"},
+        std::tuple{"a.cube.gz", "\0\0"s, "like cube, which"}}) {
+    const TemporaryFile file(name, content);
+    EXPECT_THAT([&] { open_trajectory(file.path(), {}); },
+                ThrowsMessage<Error>(
+                    AllOf(HasSubstr(format), HasSubstr("does not read; expected one of HDF5"))));
+  }
+}
+
+TEST(OpenTrajectory, SaysOneThingOfADamagedFileWithoutALastEnd) {
+  for (const auto& [name, content] :
+       {std::pair{"a.csv", "x,y,z\n1,2,3\n4,5"}, std::pair{"a.xyz", "2\n\nC 0 0 0\nC 0 0"},
+        std::pair{"a.cif", "data_a\nloop_\n_a\n_b\n1"}}) {
+    const TemporaryFile file(name, content);
+    Warnings warnings;
+    EXPECT_THROW(open_trajectory(file.path(), {{}, nullptr, &warnings})->read_frame(0), Error);
+    EXPECT_THAT(warnings.lines(), testing::IsEmpty()) << name;
+  }
 }
 
 TEST(InMemoryTrajectory, NamesTheNumberOfFrames) {
