@@ -37,7 +37,7 @@ struct PlacedKernel {
 /// from its point closest to the kernel, so that a sample costs one subtraction and two
 /// multiplications before the exponential. Hot: nothing is checked.
 template <bool kGradients, bool kAbsolute>
-HWY_INLINE void accumulate(const SlabFrame& frame, const PlacedKernel& kernel, float* values,
+HWY_INLINE void accumulate(const PacketFrame& frame, const PlacedKernel& kernel, float* values,
                            std::size_t stride) {
   const LaneTag d;
   using V = Lanes;
@@ -66,7 +66,7 @@ HWY_INLINE void accumulate(const SlabFrame& frame, const PlacedKernel& kernel, f
   const V base = hn::Mul(scale, closest_sq), along_scale = hn::Mul(scale, length_sq);
   const V threshold = hn::Set(d, kernel.threshold), peak = hn::Set(d, kernel.peak);
   for (int k = kernel.first; k <= kernel.last; ++k, values += stride) {
-    const float depth = frame.first_depth + static_cast<float>(k) * frame.step;
+    const float depth = frame.slab.first_depth + static_cast<float>(k) * frame.slab.step;
     const V s = hn::Sub(hn::Set(d, depth), closest);
     const V exponent = hn::MulAdd(hn::Mul(along_scale, s), s, base);
     const auto inside = hn::Ge(exponent, threshold);
@@ -92,10 +92,10 @@ HWY_INLINE void accumulate(const SlabFrame& frame, const PlacedKernel& kernel, f
 template <bool kGradients, bool kAbsolute>
 HWY_INLINE std::uint64_t accumulate_leaf(const KernelSet& kernels,
                                          const SamplingConstants& constants, std::size_t leaf,
-                                         const SlabFrame& frame, int buffer_offset,
+                                         const PacketFrame& frame, int buffer_offset,
                                          SampleBuffer& buffer) {
   LeafKernels placed;
-  load_leaf(kernels, leaf, frame, constants.max_support_factor, placed);
+  load_leaf(kernels, leaf, frame.slab, frame.frustum, constants.max_support_factor, placed);
   const std::size_t stride = buffer.layout().floats_per_sample();
   std::uint64_t samples = 0;
   for (unsigned bits = placed.reaches; bits != 0; bits &= bits - 1) {
@@ -132,12 +132,12 @@ HWY_NOINLINE std::uint64_t sample_coherent(const KernelSet& kernels,
                                            const SamplingConstants& constants, const View& view,
                                            const RayPacket& packet, const Slab& slab,
                                            SampleBuffer& buffer) {
-  const SlabFrame frame = make_slab_frame(packet, slab, view);
-  std::vector<SlabFrame> pieces;
+  const PacketFrame frame = make_packet_frame(packet, slab, view);
+  std::vector<PacketFrame> pieces;
   for (int begin = 0; slab.count > max_frame_planes && begin < slab.count;
        begin += max_frame_planes) {
     const int count = std::min(max_frame_planes, slab.count - begin);
-    pieces.push_back(make_slab_frame(packet, {slab.first + begin, count}, view));
+    pieces.push_back(make_packet_frame(packet, {slab.first + begin, count}, view));
   }
   std::uint64_t evaluations = 0;
   const auto visit = [&](std::size_t leaf) {
@@ -147,7 +147,7 @@ HWY_NOINLINE std::uint64_t sample_coherent(const KernelSet& kernels,
       return;
     }
     LeafKernels placed;
-    load_leaf(kernels, leaf, frame, constants.max_support_factor, placed);
+    load_leaf(kernels, leaf, frame.slab, frame.frustum, constants.max_support_factor, placed);
     float first = static_cast<float>(slab.count), last = -1;
     for (unsigned bits = placed.reaches; bits != 0; bits &= bits - 1) {
       const int i = __builtin_ctz(bits);
@@ -163,7 +163,9 @@ HWY_NOINLINE std::uint64_t sample_coherent(const KernelSet& kernels,
   };
   traverse(
       kernels.bvh,
-      [&](const Bvh::Node& node) { return node_hits(node, frame, constants.max_support_factor); },
+      [&](const Bvh::Node& node) {
+        return node_hits(node, frame.slab, frame.frustum, constants.max_support_factor);
+      },
       visit);
   return evaluations;
 }

@@ -28,10 +28,12 @@ HWY_NOINLINE std::uint64_t sample_direct(const KernelSet& kernels,
                                          SampleBuffer& buffer) {
   std::uint64_t evaluations = 0;
   for (int k = 0; k < slab.count; ++k) {
-    const SlabFrame frame = make_slab_frame(packet, {slab.first + k, 1}, view);
+    const PacketFrame frame = make_packet_frame(packet, {slab.first + k, 1}, view);
     traverse(
         kernels.bvh,
-        [&](const Bvh::Node& node) { return node_hits(node, frame, constants.max_support_factor); },
+        [&](const Bvh::Node& node) {
+          return node_hits(node, frame.slab, frame.frustum, constants.max_support_factor);
+        },
         [&](std::size_t leaf) {
           evaluations +=
               accumulate_leaf<kGradients, kAbsolute>(kernels, constants, leaf, frame, k, buffer);

@@ -74,7 +74,8 @@ inline SamplingConstants make_constants(const KernelSet& kernels) {
 
 /// Which children of a node may have a kernel that reaches into the frame: bit c for child c.
 /// Conservative: the child's extended bounds are not wholly outside one of the frustum's planes.
-HWY_INLINE unsigned node_hits(const Bvh::Node& node, const SlabFrame& frame, float support_factor) {
+HWY_INLINE unsigned node_hits(const Bvh::Node& node, const SlabFrame& frame, const Frustum& frustum,
+                              float support_factor) {
   const hn::CappedTag<float, Bvh::width> d;
   using V = hn::Vec<decltype(d)>;
   const V slack = hn::Set(d, frame.slack);
@@ -82,7 +83,7 @@ HWY_INLINE unsigned node_hits(const Bvh::Node& node, const SlabFrame& frame, flo
   for (std::size_t c = 0; c < Bvh::width; c += hn::Lanes(d)) {
     const V reach = hn::MulAdd(hn::Set(d, support_factor), hn::Load(d, node.max_radius + c), slack);
     V outside = hn::Set(d, -1e30f);
-    for (const FrustumPlane& plane : frame.planes) {
+    for (const FrustumPlane& plane : frustum.planes) {
       // The corner of the box that lies furthest inwards.
       const float* x = (plane.world[0] > 0 ? node.min_x : node.max_x) + c;
       const float* y = (plane.world[1] > 0 ? node.min_y : node.max_y) + c;
@@ -97,15 +98,6 @@ HWY_INLINE unsigned node_hits(const Bvh::Node& node, const SlabFrame& frame, flo
   }
   return hits;
 }
-
-/// The kernels of a leaf in a frame: where they lie, and which of them reach into it. Lengths are
-/// relative to the frame's reference, in camera axes.
-struct LeafKernels {
-  alignas(64) float x[Bvh::leaf_size], y[Bvh::leaf_size], z[Bvh::leaf_size];
-  alignas(64) float first[Bvh::leaf_size],
-      last[Bvh::leaf_size];  ///< planes it may reach, within the slab
-  unsigned reaches;          ///< bit i: kernel i of the leaf does
-};
 
 /// v in camera axis `row` of the frame.
 template <class D, class V = hn::Vec<D>>
@@ -127,56 +119,88 @@ HWY_INLINE V outside_sides(D d, const FrustumPlane& low, const FrustumPlane& hig
   return hn::Max(hn::Zero(d), hn::Max(a, b));
 }
 
-/// Places the kernels of a leaf in the frame and culls them against its sides and planes.
-HWY_INLINE void load_leaf(const KernelSet& kernels, std::size_t leaf, const SlabFrame& frame,
-                          float support_factor, LeafKernels& out) {
-  const hn::CappedTag<float, Bvh::leaf_size> d;
-  using V = hn::Vec<decltype(d)>;
-  const V zero = hn::Zero(d), inverse_step = hn::Set(d, 1.0f / frame.step);
-  const V last_plane = hn::Set(d, static_cast<float>(frame.count - 1));
+/// Centres of kernels in a frame.
+template <class V>
+struct Centers {
+  V x, y, z;
+};
+
+/// Kernels `at` to `at` + Lanes(d) - 1, placed in the frame.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE Centers<V> place_centers(D d, const KernelSet& kernels, std::size_t at,
+                                    const SlabFrame& frame) {
+  V world[3];
+  const float* const arrays[3] = {kernels.x.data(), kernels.y.data(), kernels.z.data()};
+  for (int j = 0; j < 3; ++j) {
+    world[j] = hn::Sub(hn::Sub(hn::Load(d, arrays[j] + at), hn::Set(d, frame.reference_high[j])),
+                       hn::Set(d, frame.reference_low[j]));
+  }
+  return {to_camera(d, frame, 0, world[0], world[1], world[2]),
+          to_camera(d, frame, 1, world[0], world[1], world[2]),
+          to_camera(d, frame, 2, world[0], world[1], world[2])};
+}
+
+/// Which planes of the slab kernels can reach within a frustum.
+template <class D>
+struct Reach {
+  hn::Vec<D> first, last;  ///< whole numbers
+  hn::Mask<D> any;         ///< the kernel may reach a sample at all
+};
+
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE Reach<D> find_reach(D d, const SlabFrame& frame, const Frustum& frustum,
+                               const Centers<V>& centers, V support) {
+  // A lower bound of the distance to the frustum's sides, exact where only one is in the way.
+  const FrustumPlane* sides = frustum.planes;
+  const V z = centers.z;
+  const V out_x = outside_sides(d, sides[0], sides[1], sides[0].x, sides[1].x, centers.x, z);
+  const V out_y = outside_sides(d, sides[2], sides[3], sides[2].y, sides[3].y, centers.y, z);
+  const V distance_sq =
+      hn::Mul(hn::MulAdd(out_x, out_x, hn::Mul(out_y, out_y)), hn::Set(d, frustum.corner_factor));
+  const V support_sq = hn::Mul(support, support);
+
+  // Which planes: the samples at distance rho >= sqrt(distance_sq) from the centre, measured
+  // across the ray, lie at most sqrt(R^2 - rho^2) cos + rho sin in front of it or behind.
+  const V rho = hn::Sqrt(distance_sq);
+  const V half_chord = hn::Sqrt(hn::Max(hn::Zero(d), hn::Sub(support_sq, distance_sq)));
+  const V sine = hn::Set(d, frustum.max_sine);
+  const V slanted = hn::MulAdd(half_chord, hn::Set(d, frustum.max_cosine), hn::Mul(rho, sine));
+  const V reach = hn::IfThenElse(hn::Le(rho, hn::Mul(support, sine)), support, slanted);
+  const V inverse_step = hn::Set(d, 1.0f / frame.step);
   const V rounding = hn::Set(d, 1e-4f + 1e-6f * static_cast<float>(frame.count));  // of planes
+  const V middle = hn::Mul(hn::Sub(z, hn::Set(d, frame.first_depth)), inverse_step);
+  const V planes = hn::MulAdd(reach, inverse_step, rounding);
+  const V last_plane = hn::Set(d, static_cast<float>(frame.count - 1));
+  const V first = hn::Max(hn::Zero(d), hn::Ceil(hn::Sub(middle, planes)));
+  const V last = hn::Min(last_plane, hn::Floor(hn::Add(middle, planes)));
+  return {first, last, hn::And(hn::Le(distance_sq, support_sq), hn::Le(first, last))};
+}
+
+/// The kernels of a leaf in a frame: where they lie, and which of them reach into the frustum.
+struct LeafKernels {
+  alignas(64) float x[Bvh::leaf_size], y[Bvh::leaf_size], z[Bvh::leaf_size];
+  alignas(64) float first[Bvh::leaf_size],
+      last[Bvh::leaf_size];  ///< planes it may reach, within the slab
+  unsigned reaches;          ///< bit i: kernel i of the leaf does
+};
+
+/// Places the kernels of a leaf in the frame and culls them against the frustum.
+HWY_INLINE void load_leaf(const KernelSet& kernels, std::size_t leaf, const SlabFrame& frame,
+                          const Frustum& frustum, float support_factor, LeafKernels& out) {
+  const hn::CappedTag<float, Bvh::leaf_size> d;
   out.reaches = 0;
   for (std::size_t i = 0; i < Bvh::leaf_size; i += hn::Lanes(d)) {
     const std::size_t at = leaf * Bvh::leaf_size + i;
-    V world[3];
-    const float* const arrays[3] = {kernels.x.data(), kernels.y.data(), kernels.z.data()};
-    for (int j = 0; j < 3; ++j) {
-      world[j] = hn::Sub(hn::Sub(hn::Load(d, arrays[j] + at), hn::Set(d, frame.reference_high[j])),
-                         hn::Set(d, frame.reference_low[j]));
-    }
-    const V x = to_camera(d, frame, 0, world[0], world[1], world[2]);
-    const V y = to_camera(d, frame, 1, world[0], world[1], world[2]);
-    const V z = to_camera(d, frame, 2, world[0], world[1], world[2]);
-    const V support = hn::Mul(hn::Load(d, kernels.radius.data() + at), hn::Set(d, support_factor));
-
-    // A lower bound of the distance to the frustum's sides, exact where only one is in the way.
-    const FrustumPlane* sides = frame.planes;
-    const V out_x = outside_sides(d, sides[0], sides[1], sides[0].x, sides[1].x, x, z);
-    const V out_y = outside_sides(d, sides[2], sides[3], sides[2].y, sides[3].y, y, z);
-    const V distance_sq =
-        hn::Mul(hn::MulAdd(out_x, out_x, hn::Mul(out_y, out_y)), hn::Set(d, frame.corner_factor));
-    const V support_sq = hn::Mul(support, support);
-
-    // Which planes: the samples at distance rho >= sqrt(distance_sq) from the centre, measured
-    // across the ray, lie at most sqrt(R^2 - rho^2) cos + rho sin in front of it or behind.
-    const V rho = hn::Sqrt(distance_sq);
-    const V half_chord = hn::Sqrt(hn::Max(zero, hn::Sub(support_sq, distance_sq)));
-    const V slanted = hn::MulAdd(half_chord, hn::Set(d, frame.max_cosine),
-                                 hn::Mul(rho, hn::Set(d, frame.max_sine)));
-    const auto upright = hn::Le(rho, hn::Mul(support, hn::Set(d, frame.max_sine)));
-    const V reach = hn::IfThenElse(upright, support, slanted);
-    const V middle = hn::Mul(hn::Sub(z, hn::Set(d, frame.first_depth)), inverse_step);
-    const V planes = hn::MulAdd(reach, inverse_step, rounding);
-    const V first = hn::Max(zero, hn::Ceil(hn::Sub(middle, planes)));
-    const V last = hn::Min(last_plane, hn::Floor(hn::Add(middle, planes)));
-    const auto reaches = hn::And(hn::Le(distance_sq, support_sq), hn::Le(first, last));
-
-    hn::Store(x, d, out.x + i);
-    hn::Store(y, d, out.y + i);
-    hn::Store(z, d, out.z + i);
-    hn::Store(first, d, out.first + i);
-    hn::Store(last, d, out.last + i);
-    out.reaches |= mask_bits(d, reaches) << i;
+    const auto centers = place_centers(d, kernels, at, frame);
+    const auto support =
+        hn::Mul(hn::Load(d, kernels.radius.data() + at), hn::Set(d, support_factor));
+    const auto reach = find_reach(d, frame, frustum, centers, support);
+    hn::Store(centers.x, d, out.x + i);
+    hn::Store(centers.y, d, out.y + i);
+    hn::Store(centers.z, d, out.z + i);
+    hn::Store(reach.first, d, out.first + i);
+    hn::Store(reach.last, d, out.last + i);
+    out.reaches |= mask_bits(d, reach.any) << i;
   }
 }
 

@@ -154,62 +154,57 @@ HWY_INLINE Light light_field(LaneTag d, const ShadingConstants& shading, const S
           hn::Mul(hn::Set(d, shading.specular), power_of(d, n_h, shading.shininess))};
 }
 
-/// The picture's part of a packet while rays are under way.
-struct PixelState {
-  alignas(64) float r[max_lanes], g[max_lanes], b[max_lanes], a[max_lanes];
+/// The part of a packet's rays that lies in a slab, relative to it.
+struct LivePart {
+  Lanes first, last;  ///< of each lane; first > last: none
+  int begin, end;     ///< of all lanes, both included; begin > end: none
 };
 
-/// Composites the samples of `slab` into `pixels`. A ray that reaches the termination opacity ends:
-/// its packet.last becomes that sample. `buffer_has_gradients` as its layout says. Hot: nothing is
-/// checked.
+HWY_INLINE LivePart live_part(LaneTag d, const RayState& rays, const Slab& slab) {
+  const Lanes slab_first = hn::Set(d, static_cast<float>(slab.first));
+  const Lanes slab_last = hn::Set(d, static_cast<float>(slab.count - 1));
+  LivePart live;
+  live.first = hn::Max(hn::Sub(hn::Load(d, rays.first), slab_first), hn::Zero(d));
+  live.last = hn::Min(hn::Sub(hn::Load(d, rays.last), slab_first), slab_last);
+  const LaneMask any = hn::Le(live.first, live.last);
+  const Lanes none = hn::Set(d, -1.0f);
+  live.begin = static_cast<int>(
+      hn::GetLane(hn::MinOfLanes(d, hn::IfThenElse(any, live.first, hn::Add(slab_last, slab_last)))));
+  live.end = static_cast<int>(hn::GetLane(hn::MaxOfLanes(d, hn::IfThenElse(any, live.last, none))));
+  return live;
+}
+
+/// Composites the samples of `slab` in block `block` of the buffer into the rays' colours. A ray that
+/// reaches the termination opacity ends. Hot: nothing is checked.
 inline HWY_NOINLINE void integrate(const std::vector<Classifier>& classifiers,
                                    const ShadingConstants& shading, const Slab& slab,
-                                   SampleBuffer& buffer, RayPacket& packet, PixelState& pixels) {
+                                   SampleBuffer& buffer, int block, RayState& rays) {
   const LaneTag d;
   const SampleLayout& layout = buffer.layout();
-  const int lanes = packet.lanes;
-
-  // Ranges of live samples relative to the slab, as floats so that comparing them gives lane masks.
-  alignas(64) float first_of[max_lanes], last_of[max_lanes], length_of[max_lanes];
-  alignas(64) float direction_x[max_lanes], direction_y[max_lanes];
-  int begin = slab.count, end = -1;
-  for (int l = 0; l < lanes; ++l) {
-    const auto count = static_cast<SampleIndex>(slab.count);
-    const auto low =
-        static_cast<int>(std::clamp<SampleIndex>(packet.first[l] - slab.first, 0, count));
-    const auto high =
-        static_cast<int>(std::clamp<SampleIndex>(packet.last[l] - slab.first, -1, count - 1));
-    if (low <= high) {
-      begin = std::min(begin, low);
-      end = std::max(end, high);
-    }
-    first_of[l] = static_cast<float>(low);
-    last_of[l] = static_cast<float>(high);
-    direction_x[l] = static_cast<float>(packet.direction_x[l]);
-    direction_y[l] = static_cast<float>(packet.direction_y[l]);
-    length_of[l] = static_cast<float>(std::sqrt(packet.direction_x[l] * packet.direction_x[l] +
-                                                packet.direction_y[l] * packet.direction_y[l] + 1));
-  }
-  const Lanes first = hn::Load(d, first_of), length = hn::Load(d, length_of);
-  Lanes last = hn::Load(d, last_of);
+  const LivePart part = live_part(d, rays, slab);
+  Lanes last = part.last;
+  const Lanes direction_x = hn::Load(d, rays.direction_x);
+  const Lanes direction_y = hn::Load(d, rays.direction_y);
+  const Lanes length = hn::Sqrt(hn::MulAdd(
+      direction_x, direction_x, hn::MulAdd(direction_y, direction_y, hn::Set(d, 1.0f))));
   const Lanes toward = hn::Div(hn::Set(d, -1.0f), length);
-  const Lanes to_eye[3] = {hn::Mul(hn::Load(d, direction_x), toward),
-                           hn::Mul(hn::Load(d, direction_y), toward), toward};
+  const Lanes to_eye[3] = {hn::Mul(direction_x, toward), hn::Mul(direction_y, toward), toward};
 
   const bool skip_untouched =
       std::all_of(classifiers.begin(), classifiers.end(),
                   [](const Classifier& c) { return c.zero_is_transparent; });
   const Lanes one = hn::Set(d, 1.0f), zero = hn::Zero(d);
-  Lanes color[3] = {hn::Load(d, pixels.r), hn::Load(d, pixels.g), hn::Load(d, pixels.b)};
-  Lanes alpha = hn::Load(d, pixels.a);
-  for (int k = begin; k <= end; ++k) {
-    if (skip_untouched && !buffer.touched(k)) continue;
+  Lanes color[3] = {hn::Load(d, rays.r), hn::Load(d, rays.g), hn::Load(d, rays.b)};
+  Lanes alpha = hn::Load(d, rays.a);
+  for (int k = part.begin; k <= part.end; ++k) {
+    const int cell = buffer.cell(k, block);
+    if (skip_untouched && !buffer.touched(cell)) continue;
     const Lanes index = hn::Set(d, static_cast<float>(k));
-    const LaneMask live = hn::And(hn::Le(first, index), hn::Le(index, last));
+    const LaneMask live = hn::And(hn::Le(part.first, index), hn::Le(index, last));
     bool anything = false;
     for (std::size_t f = 0; f < classifiers.size(); ++f) {
       const Classifier& c = classifiers[f];
-      const float* const channels = buffer.at(k, static_cast<int>(f));
+      const float* const channels = buffer.at(cell, static_cast<int>(f));
       const Lanes argument = argument_of(d, c, hn::Load(d, channels));
       LaneMask visible = hn::And(live, hn::Gt(argument, hn::Set(d, c.transparent_below)));
       if (hn::AllFalse(d, visible)) continue;
@@ -236,16 +231,15 @@ inline HWY_NOINLINE void integrate(const std::vector<Classifier>& classifiers,
     const LaneMask ended = hn::And(live, hn::Gt(alpha, hn::Set(d, shading.termination_opacity)));
     if (HWY_UNLIKELY(!hn::AllFalse(d, ended))) {
       last = hn::IfThenElse(ended, index, last);
-      for (unsigned bits = mask_bits(d, ended); bits != 0; bits &= bits - 1) {
-        packet.last[__builtin_ctz(bits)] = slab.first + k;
-      }
+      const Lanes frame_index = hn::Set(d, static_cast<float>(slab.first + k));
+      hn::Store(hn::IfThenElse(ended, frame_index, hn::Load(d, rays.last)), d, rays.last);
       if (hn::AllFalse(d, hn::Gt(last, index))) break;
     }
   }
-  hn::Store(color[0], d, pixels.r);
-  hn::Store(color[1], d, pixels.g);
-  hn::Store(color[2], d, pixels.b);
-  hn::Store(alpha, d, pixels.a);
+  hn::Store(color[0], d, rays.r);
+  hn::Store(color[1], d, rays.g);
+  hn::Store(color[2], d, rays.b);
+  hn::Store(alpha, d, rays.a);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -7,8 +7,13 @@
 
 namespace motes {
 
-/// A packet of width x height rays whose top left pixel is (px, py), lanes row by row. Lanes
-/// outside the image have no samples.
+/// A packet of width x height rays whose top left pixel is (px, py), lanes row by row.
 RayPacket make_ray_packet(const FrameContext& context, int px, int py, int width, int height);
+
+/// The rays of that packet before their first sample. Lanes outside the image have no samples.
+RayState make_ray_state(const FrameContext& context, int px, int py, int width, int height);
+
+/// What the rays of width x height pixels are within.
+RayBounds make_ray_bounds(const FrameContext& context, int px, int py, int width, int height);
 
 }  // namespace motes

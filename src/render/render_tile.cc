@@ -1,7 +1,7 @@
 #include "render/render_tile.h"
 
 #include <algorithm>
-#include <cmath>
+#include <cstdint>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/render_tile.cc"
@@ -36,43 +36,56 @@ std::uint64_t sample_field(const FrameContext& context, const SamplingConstants&
   return sample.template operator()<false, false>();
 }
 
-/// First and last sample of any ray of the packet; first > last: none.
-struct PacketRange {
+/// First and last sample of any ray; first > last: none.
+struct SampleRange {
   SampleIndex first, last;
 };
 
-PacketRange live_range(const RayPacket& packet) {
-  PacketRange range{std::numeric_limits<SampleIndex>::max(), -1};
-  for (int l = 0; l < packet.lanes; ++l) {
-    if (packet.first[l] > packet.last[l]) continue;
-    range.first = std::min(range.first, packet.first[l]);
-    range.last = std::max(range.last, packet.last[l]);
+SampleRange live_range(const RayState& rays) {
+  const LaneTag d;
+  constexpr Slab everything{0, 1 << 28};  // a frame has at most 1e7 planes
+  const LivePart part = live_part(d, rays, everything);
+  return {part.begin, part.end};
+}
+
+/// Samples of all rays, up to each ray's end.
+std::uint64_t count_samples(const RayState& rays) {
+  std::uint64_t samples = 0;
+  for (std::size_t l = 0; l < hn::Lanes(LaneTag()); ++l) {
+    samples += static_cast<std::uint64_t>(rays.last[l] - rays.first[l] + 1);
   }
-  return range;
+  return samples;
+}
+
+/// Writes the colours of the packet whose top left pixel is (px, py).
+void store_pixels(const RayState& rays, int px, int py, int width, Framebuffer& image) {
+  const int lanes = static_cast<int>(hn::Lanes(LaneTag()));
+  for (int l = 0; l < lanes; ++l) {
+    const int x = px + l % width, y = py + l / width;
+    if (x >= image.width || y >= image.height) continue;
+    float* const pixel = image.pixel(x, y);
+    pixel[0] = rays.r[l];
+    pixel[1] = rays.g[l];
+    pixel[2] = rays.b[l];
+    pixel[3] = rays.a[l];
+  }
 }
 
 /// The paper's multi-pass algorithm (section 4.2): slab by slab, sampling then integrating, until
-/// all rays of the packet have ended.
-TileCounts render_packet(const FrameContext& context, const SamplingConstants& constants,
-                         RayPacket& packet, SampleBuffer& buffer, PixelState& pixels) {
-  TileCounts counts;
-  PacketRange range = live_range(packet);
-  const RayPacket whole = packet;
+/// all rays of the packet have ended. Returns kernel evaluations.
+std::uint64_t render_packet(const FrameContext& context, const SamplingConstants& constants,
+                            const RayPacket& packet, SampleBuffer& buffer, RayState& rays) {
+  std::uint64_t evaluations = 0;
+  SampleRange range = live_range(rays);
   for (SampleIndex k = range.first; k <= range.last; k += context.samples_per_pass) {
-    const Slab slab{
-        k, static_cast<int>(std::min<SampleIndex>(range.last - k + 1, context.samples_per_pass))};
+    const Slab slab{k, std::min(range.last - k + 1, context.samples_per_pass)};
     buffer.reserve(slab.count);
-    counts.kernel_evaluations += sample_field(context, constants, packet, slab, buffer);
-    integrate(context.classifiers, context.shading, slab, buffer, packet, pixels);
+    evaluations += sample_field(context, constants, packet, slab, buffer);
+    integrate(context.classifiers, context.shading, slab, buffer, 0, rays);
     buffer.clear();
-    range = live_range(packet);
+    range = live_range(rays);
   }
-  for (int l = 0; l < packet.lanes; ++l) {
-    if (whole.first[l] <= whole.last[l]) {
-      counts.samples += static_cast<std::uint64_t>(packet.last[l] - packet.first[l] + 1);
-    }
-  }
-  return counts;
+  return evaluations;
 }
 
 TileCounts render_tile(const FrameContext& context, const Tile& tile, Framebuffer& image) {
@@ -87,20 +100,11 @@ TileCounts render_tile(const FrameContext& context, const Tile& tile, Framebuffe
   TileCounts counts;
   for (int py = tile.y; py < tile.y + tile.height; py += packet_height) {
     for (int px = tile.x; px < tile.x + tile.width; px += packet_width) {
-      RayPacket packet = make_ray_packet(context, px, py, packet_width, packet_height);
-      PixelState pixels{};
-      const TileCounts done = render_packet(context, constants, packet, buffer, pixels);
-      counts.samples += done.samples;
-      counts.kernel_evaluations += done.kernel_evaluations;
-      for (int l = 0; l < lanes; ++l) {
-        const int x = px + l % packet_width, y = py + l / packet_width;
-        if (x >= image.width || y >= image.height) continue;
-        float* const pixel = image.pixel(x, y);
-        pixel[0] = pixels.r[l];
-        pixel[1] = pixels.g[l];
-        pixel[2] = pixels.b[l];
-        pixel[3] = pixels.a[l];
-      }
+      const RayPacket packet = make_ray_packet(context, px, py, packet_width, packet_height);
+      RayState rays = make_ray_state(context, px, py, packet_width, packet_height);
+      counts.kernel_evaluations += render_packet(context, constants, packet, buffer, rays);
+      counts.samples += count_samples(rays);
+      store_pixels(rays, px, py, packet_width, image);
     }
   }
   return counts;

@@ -10,6 +10,7 @@
 #include <atomic>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <mutex>
 #include <numbers>
 
@@ -66,14 +67,24 @@ void check_step(const KernelSet& kernels, const ResolvedScene& scene) {
   }
 }
 
+/// Planes are counted from the first that can meet the box.
+View make_view(const CameraAxes& axes, const Point3d& eye, const Bounds3d& box, double step) {
+  double nearest = std::numeric_limits<double>::max();
+  for (int corner = 0; corner < 8; ++corner) {
+    const Point3d p{(corner & 1 ? box.max : box.min).x, (corner & 2 ? box.max : box.min).y,
+                    (corner & 4 ? box.max : box.min).z};
+    nearest = std::min(nearest, dot(p - eye, axes.forward));
+  }
+  const double first = std::floor(std::max(nearest, 0.0) / step - 1);
+  return {axes, eye, {static_cast<std::int64_t>(std::max(first, 0.0)), step}};
+}
+
 FrameContext make_context(const KernelSet& kernels, const ResolvedScene& scene,
                           const RenderOptions& options) {
   check_step(kernels, scene);
   const CameraAxes axes = camera_axes(scene.camera);
   FrameContext context;
   context.kernels = &kernels;
-  context.view = {axes, to_internal(kernels, scene.camera.eye),
-                  scene.step_size * kernels.length_scale};
   context.width = scene.render.width;
   context.height = scene.render.height;
   context.orthographic = scene.camera.orthographic_height.has_value();
@@ -83,6 +94,8 @@ FrameContext make_context(const KernelSet& kernels, const ResolvedScene& scene,
   context.half_width = context.half_height * context.width / context.height;
   const Bounds3d box = kernels.box();
   context.box = {to_internal(kernels, box.min), to_internal(kernels, box.max)};
+  context.view = make_view(axes, to_internal(kernels, scene.camera.eye), context.box,
+                           scene.step_size * kernels.length_scale);
   for (std::size_t f = 0; f < kernels.fields.size(); ++f) {
     context.classifiers.push_back(compile_transfer_function(
         scene.transfer_functions[f], kernels.fields[f].value_scale, scene.step_size));

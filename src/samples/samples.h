@@ -13,14 +13,22 @@
 
 namespace motes {
 
-/// Number of a plane of samples; plane k lies at depth z_k = (k + 1/2) * step_size.
-using SampleIndex = std::int64_t;
+/// Number of a plane of samples, counted from SamplePlanes::first.
+using SampleIndex = int;
+
+/// The planes on which a frame's samples lie, perpendicular to the view: plane k at depth
+/// (first + k + 1/2) * step. `first` is where the volume begins, so that numbers stay small however
+/// far away the eye is.
+struct SamplePlanes {
+  std::int64_t first = 0;
+  double step = 0;  ///< internal length
+  double depth(SampleIndex k) const { return (static_cast<double>(first + k) + 0.5) * step; }
+};
 
 /// Planes first, first + 1, ..., first + count - 1.
 struct Slab {
   SampleIndex first = 0;
   int count = 0;
-  double depth(int k, double step) const { return (static_cast<double>(first + k) + 0.5) * step; }
 };
 
 /// Widest vector of floats of any instruction set.
@@ -33,8 +41,15 @@ struct RayPacket {
   int lanes = 0;
   double origin_x[max_lanes], origin_y[max_lanes];
   double direction_x[max_lanes], direction_y[max_lanes];
-  /// Samples of each lane inside the volume's box, both included; first > last: none.
-  SampleIndex first[max_lanes], last[max_lanes];
+};
+
+/// How far the rays of a packet have come: what pass 2 reads and changes, one float a lane.
+struct RayState {
+  /// Samples inside the volume's box, both included; first > last: none. A ray that ends early has
+  /// its last sample moved up. Whole numbers, exact in float: a frame has at most 1e7 planes.
+  alignas(64) float first[max_lanes], last[max_lanes];
+  alignas(64) float direction_x[max_lanes], direction_y[max_lanes];
+  alignas(64) float r[max_lanes], g[max_lanes], b[max_lanes], a[max_lanes];
 };
 
 /// Channels of a field at a sample: its value; with `gradients` its gradient in camera axes; with
@@ -53,48 +68,64 @@ struct SampleLayout {
   }
 };
 
-/// The samples of a packet in a slab: [sample][field][channel][lane], all zero but where a particle
-/// was added. `touched` has a bit for each sample to which something was added, so that clearing
-/// and integrating pass over empty ones.
+/// The samples of a slab for one packet, or for several side by side (the blocks of a tile):
+/// [sample][block][field][channel][lane], all zero but where a particle was added. A sample of a
+/// block is a cell; `touched` has a bit for each to which something was added, so that clearing and
+/// integrating pass over empty ones.
 class SampleBuffer {
  public:
-  SampleBuffer(const SampleLayout& layout, int num_samples)
+  SampleBuffer(const SampleLayout& layout, int num_samples, int num_blocks = 1)
       : layout_(layout),
-        values_(layout.floats_per_sample() * static_cast<std::size_t>(num_samples), 0.0f),
-        touched_((static_cast<std::size_t>(num_samples) + 63) / 64, 0) {}
+        num_blocks_(num_blocks),
+        values_(layout.floats_per_sample() * static_cast<std::size_t>(num_samples * num_blocks),
+                0.0f),
+        touched_((static_cast<std::size_t>(num_samples * num_blocks) + 63) / 64, 0) {}
 
   const SampleLayout& layout() const { return layout_; }
-  int capacity() const { return static_cast<int>(values_.size() / layout_.floats_per_sample()); }
+  int num_blocks() const { return num_blocks_; }
+  int capacity() const {
+    return static_cast<int>(values_.size() / layout_.floats_per_sample()) / num_blocks_;
+  }
+  int cell(int sample, int block) const { return sample * num_blocks_ + block; }
 
   /// Grows the buffer to `num_samples`; what it held is cleared.
   void reserve(int num_samples) {
-    if (num_samples > capacity()) *this = SampleBuffer(layout_, num_samples);
+    if (num_samples > capacity()) *this = SampleBuffer(layout_, num_samples, num_blocks_);
   }
 
   /// First lane of channel 0. Hot: unchecked.
-  float* at(int sample, int field) {
-    return values_.data() + static_cast<std::size_t>(sample) * layout_.floats_per_sample() +
+  float* at(int cell, int field) {
+    return values_.data() + static_cast<std::size_t>(cell) * layout_.floats_per_sample() +
            static_cast<std::size_t>(field) * static_cast<std::size_t>(layout_.channels()) *
                static_cast<std::size_t>(layout_.lanes);
   }
 
-  /// Marks samples first to last, both included. Hot: unchecked.
+  /// Marks cells first to last, both included. Hot: unchecked.
   void touch(int first, int last) {
     for (int word = first / 64; word <= last / 64; ++word) {
       const int low = std::max(first - 64 * word, 0), high = std::min(last - 64 * word, 63);
-      touched_[static_cast<std::size_t>(word)] |= (~std::uint64_t{0} >> (63 - (high - low))) << low;
+      touch_word(word, (~std::uint64_t{0} >> (63 - (high - low))) << low);
     }
   }
-  bool touched(int sample) const {
-    return (touched_[static_cast<std::size_t>(sample) / 64] >> (sample % 64) & 1) != 0;
+  /// Marks cells 64 word + i for each bit i.
+  void touch_word(int word, std::uint64_t bits) { touched_[static_cast<std::size_t>(word)] |= bits; }
+  bool touched(int cell) const {
+    return (touched_[static_cast<std::size_t>(cell) / 64] >> (cell % 64) & 1) != 0;
+  }
+  /// Bit b: something was added to a sample of block b. The number of blocks divides 64.
+  std::uint64_t touched_blocks() const {
+    std::uint64_t any = 0;
+    for (const std::uint64_t word : touched_) any |= word;
+    for (int shift = 32; shift >= num_blocks_; shift /= 2) any |= any >> shift;
+    return num_blocks_ == 64 ? any : any & ((std::uint64_t{1} << num_blocks_) - 1);
   }
 
   /// Sets what was touched back to zero.
   void clear() {
     for (std::size_t word = 0; word < touched_.size(); ++word) {
       for (std::uint64_t bits = touched_[word]; bits != 0; bits &= bits - 1) {
-        const int sample = static_cast<int>(word) * 64 + std::countr_zero(bits);
-        std::fill_n(at(sample, 0), layout_.floats_per_sample(), 0.0f);
+        const int cell = static_cast<int>(word) * 64 + std::countr_zero(bits);
+        std::fill_n(at(cell, 0), layout_.floats_per_sample(), 0.0f);
       }
       touched_[word] = 0;
     }
@@ -102,6 +133,7 @@ class SampleBuffer {
 
  private:
   SampleLayout layout_;
+  int num_blocks_ = 1;
   AlignedVector<float> values_;
   AlignedVector<std::uint64_t> touched_;
 };

@@ -8,10 +8,10 @@
 namespace motes {
 namespace {
 
-TEST(Slab, PlanesLieInTheMiddleOfTheirSteps) {
-  const Slab slab{10, 4};
-  EXPECT_DOUBLE_EQ(slab.depth(0, 0.5), 5.25);
-  EXPECT_DOUBLE_EQ(slab.depth(3, 0.5), 6.75);
+TEST(SamplePlanes, LieInTheMiddleOfTheirSteps) {
+  const SamplePlanes planes{10, 0.5};
+  EXPECT_DOUBLE_EQ(planes.depth(0), 5.25);
+  EXPECT_DOUBLE_EQ(planes.depth(3), 6.75);
 }
 
 TEST(SampleLayout, CountsChannels) {
@@ -48,6 +48,19 @@ RC_GTEST_PROP(SampleBuffer, RemembersAndClearsWhatWasTouched, ()) {
       for (int l = 0; l < 4; ++l) RC_ASSERT(buffer.at(k, f)[l] == 0.0f);
     }
   }
+}
+
+TEST(SampleBuffer, TellsWhichBlocksWereTouched) {
+  SampleBuffer buffer(SampleLayout{.lanes = 4}, 9, 16);
+  EXPECT_EQ(buffer.capacity(), 9);
+  EXPECT_EQ(buffer.touched_blocks(), 0u);
+  buffer.touch(buffer.cell(8, 5), buffer.cell(8, 5));
+  buffer.touch_word(1, std::uint64_t{1} << (2 * 16 + 11));  // sample 6
+  EXPECT_TRUE(buffer.touched(buffer.cell(6, 11)));
+  EXPECT_EQ(buffer.touched_blocks(), 1u << 5 | 1u << 11);
+  SampleBuffer wide(SampleLayout{.lanes = 4}, 2, 64);
+  wide.touch(wide.cell(1, 63), wide.cell(1, 63));
+  EXPECT_EQ(wide.touched_blocks(), std::uint64_t{1} << 63);
 }
 
 TEST(SampleBuffer, GrowsToWhatIsAskedFor) {
