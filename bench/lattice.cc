@@ -80,13 +80,16 @@ int main(int argc, char** argv) {
   for (const double extinction : {2.0, 0.05}) {
     for (const double distance : {1.9, 0.75}) {
       ResolvedScene scene = make_scene(n, distance, extinction);
-      scene.render.engine = engine == "direct" ? Engine::direct : Engine::coherent;
+      scene.render.engine = engine == "direct"  ? Engine::direct
+                            : engine == "sweep" ? Engine::sweep
+                                                : Engine::coherent;
       RenderOptions options;
       if (engine == "one-pass") options.samples_per_pass = 0;
       std::vector<double> times;
       RenderStatistics statistics;
+      Framebuffer image;
       for (int i = 0; i <= repeat; ++i) {
-        renderer.render(scene, options, &statistics);
+        renderer.render(scene, options, image, &statistics);
         if (i > 0) times.push_back(statistics.frame_ms);
       }
       std::sort(times.begin(), times.end());

@@ -87,18 +87,12 @@ Framebuffer render_frames(const Renderer& renderer, const ResolvedScene& scene,
   const RenderOptions render_options{options.threads, std::nullopt, &console};
   Framebuffer image;
   for (int frame = options.repeat > 1 ? -1 : 0; frame < options.repeat; ++frame) {
-    image = renderer.render(scene, render_options, &statistics.frame);
+    renderer.render(scene, render_options, image, &statistics.frame);
     if (frame >= 0) statistics.frame_ms.push_back(statistics.frame.frame_ms);
   }
   console.finish();
   std::sort(statistics.frame_ms.begin(), statistics.frame_ms.end());
   return image;
-}
-
-void replace_missing_engine(Scene& scene, Console& console) {
-  if (scene.render.engine != Engine::sweep) return;
-  scene.render.engine = Engine::coherent;
-  console.warnings().add("the engine 'sweep' is not built yet; rendering with 'coherent'");
 }
 
 /// Options and the files that they name; a file may be "", none.
@@ -148,7 +142,6 @@ void run(const Options& options) {
   Scene scene = open_scene(options.path);
   refuse_same_file(outputs, {"data.path", scene.data_path});
   options.changes.apply(scene);
-  replace_missing_engine(scene, console);
   Statistics statistics;
   std::optional<Renderer> renderer;
   ResolvedScene resolved;

@@ -27,7 +27,8 @@ namespace HWY_NAMESPACE {
 /// Exponents below this are cut off: 2^-125 is the least power whose mantissa stays normal.
 inline constexpr float min_exponent = -125.0f;
 
-/// 2^x, relative error below 3e-7, for x in [min_exponent, 0.5]; anything outside gives garbage.
+/// 2^x, relative error below 3e-7, for x in [min_exponent, -min_exponent]; anything outside gives
+/// garbage.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V exp2_bounded(D d, V x) {
   // Adding 1.5 * 2^23 rounds to an integer n and leaves n in the low bits of the sum.
@@ -50,7 +51,8 @@ HWY_INLINE V exp2_bounded(D d, V x) {
 struct FieldConstants {
   float support_factor;
   float peak_factor;
-  float threshold;  ///< exponent (base 2) at the support radius: -sigma^2/2 log2(e)
+  float threshold;      ///< exponent (base 2) at the support radius: -sigma^2/2 log2(e)
+  float support_value;  ///< 2^threshold
 };
 
 struct SamplingConstants {
@@ -62,10 +64,11 @@ inline SamplingConstants make_constants(const KernelSet& kernels) {
   SamplingConstants constants;
   for (std::size_t f = 0; f < kernels.fields.size(); ++f) {
     const double sigma = kernels.fields[f].kernel.support_factor;
-    const auto threshold = static_cast<float>(-0.5 * sigma * sigma * std::numbers::log2e);
+    const double threshold =
+        std::max(-0.5 * sigma * sigma * std::numbers::log2e, static_cast<double>(min_exponent));
     constants.fields[f] = {static_cast<float>(sigma),
                            static_cast<float>(kernels.fields[f].peak_factor()),
-                           std::max(threshold, min_exponent)};
+                           static_cast<float>(threshold), static_cast<float>(std::exp2(threshold))};
     constants.max_support_factor =
         std::max(constants.max_support_factor, static_cast<float>(sigma));
   }

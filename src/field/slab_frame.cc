@@ -78,10 +78,10 @@ Frustum make_frustum(const RayBounds& rays, const SlabFrame& frame, const View& 
   const auto sides = [&](int first, int axis, const Range& origin, const Range& direction,
                          double reference) {
     const auto at = [&](double o, double d) { return o + frame.reference_depth * d - reference; };
-    frustum.planes[first] = make_side(frame, view.axes, axis, -1, at(origin.low, direction.low),
-                                      direction.low);
-    frustum.planes[first + 1] = make_side(frame, view.axes, axis, +1,
-                                          at(origin.high, direction.high), direction.high);
+    frustum.planes[first] =
+        make_side(frame, view.axes, axis, -1, at(origin.low, direction.low), direction.low);
+    frustum.planes[first + 1] =
+        make_side(frame, view.axes, axis, +1, at(origin.high, direction.high), direction.high);
   };
   sides(0, 0, rays.origin_x, rays.direction_x, frame.reference_x);
   sides(2, 1, rays.origin_y, rays.direction_y, frame.reference_y);
@@ -109,10 +109,8 @@ PacketFrame make_packet_frame(const RayPacket& packet, const Slab& slab, const V
   const double depth = frame.slab.reference_depth;
   for (int l = 0; l < packet.lanes; ++l) {
     const double x = packet.direction_x[l], y = packet.direction_y[l];
-    frame.offset_x[l] =
-        static_cast<float>(packet.origin_x[l] + depth * x - frame.slab.reference_x);
-    frame.offset_y[l] =
-        static_cast<float>(packet.origin_y[l] + depth * y - frame.slab.reference_y);
+    frame.offset_x[l] = static_cast<float>(packet.origin_x[l] + depth * x - frame.slab.reference_x);
+    frame.offset_y[l] = static_cast<float>(packet.origin_y[l] + depth * y - frame.slab.reference_y);
     frame.direction_x[l] = static_cast<float>(x);
     frame.direction_y[l] = static_cast<float>(y);
     frame.inverse_length_sq[l] = static_cast<float>(1 / (x * x + y * y + 1));

@@ -45,24 +45,24 @@ Classifier compile_transfer_function(const TransferFunction& function, double va
   // A single point is one flat segment.
   const std::size_t segments = std::max<std::size_t>(1, knots.size() - 1);
   c.num_segments = static_cast<int>(segments);
-  const std::size_t padded = (segments + max_lanes - 1) / max_lanes * max_lanes;
-  const auto clear = [&](AlignedVector<float>& v) { v.assign(padded, 0.0f); };
-  clear(c.begin);
-  clear(c.inverse_width);
-  for (int i = 0; i < 4; ++i) {
-    clear(c.base[i]);
-    clear(c.rise[i]);
-  }
+  c.row_size = (segments + max_lanes - 1) / max_lanes * max_lanes;
+  c.table.assign(Classifier::num_rows * c.row_size, 0.0f);
   for (std::size_t s = 0; s < segments; ++s) {
     const Knot &a = knots[s], &b = knots[std::min(s + 1, knots.size() - 1)];
-    c.begin[s] = static_cast<float>(a.argument);
+    const auto entry = [&](int row) -> float& {
+      return c.table[static_cast<std::size_t>(row) * c.row_size + s];
+    };
     const double width = b.argument - a.argument;
-    c.inverse_width[s] = width > 0 ? static_cast<float>(std::min(1 / width, 1e38)) : 0.0f;
+    entry(Classifier::begin) = static_cast<float>(a.argument);
+    entry(Classifier::inverse_width) =
+        width > 0 ? static_cast<float>(std::min(1 / width, 1e38)) : 0.0f;
     for (int i = 0; i < 4; ++i) {
-      c.base[i][s] = static_cast<float>(a.values[i]);
-      c.rise[i][s] = static_cast<float>(b.values[i] - a.values[i]);
+      entry(Classifier::base + i) = static_cast<float>(a.values[i]);
+      entry(Classifier::rise + i) = static_cast<float>(b.values[i] - a.values[i]);
     }
   }
+
+  for (const Knot& k : knots) c.max_depth = std::max(c.max_depth, static_cast<float>(k.values[3]));
 
   // The transparent beginning: up to the last of the leading points without extinction.
   constexpr float infinity = std::numeric_limits<float>::infinity();
@@ -73,7 +73,9 @@ Classifier compile_transfer_function(const TransferFunction& function, double va
   } else if (visible == knots.end()) {
     c.transparent_below = infinity;
   } else {
-    c.transparent_below = static_cast<float>((visible - 1)->argument);
+    const double argument = (visible - 1)->argument;
+    c.transparent_below =
+        static_cast<float>(function.log_scale ? std::pow(10, argument) * value_scale : argument);
   }
   c.zero_is_transparent = extinction_of_zero(knots, function.log_scale) == 0;
   return c;

@@ -1,25 +1,31 @@
 // Transfer functions compiled for pass 2: tables in the units of the sample buffer.
 #pragma once
 
-#include <vector>
+#include <cstddef>
 
 #include "core/aligned.h"
 #include "scene/transfer_function.h"
 
 namespace motes {
 
-/// Segments of a piecewise linear transfer function; every array has one entry a segment and is
-/// padded to whole vectors. The argument is the buffer's value or, with log_scale, its base-10
-/// logarithm.
+/// Segments of a piecewise linear transfer function. The argument is the buffer's value or, with
+/// log_scale, its base-10 logarithm.
 struct Classifier {
+  /// Rows of the table, one entry a segment: its begin, one over its width, values at its begin and
+  /// their rise over it. Values are red, green, blue, and extinction times the step in depth
+  /// (file's lengths), so that times |D| it is a sample's optical depth.
+  enum Row { begin, inverse_width, base, rise = base + 4, num_rows = rise + 4 };
+
   bool log_scale = false;
   float log_shift = 0;  ///< with log_scale: log10(value) = log10(buffer's value) + log_shift
   int num_segments = 0;
-  AlignedVector<float> begin, inverse_width;
-  /// Values at the segment's begin and their rise over it: red, green, blue, and extinction times
-  /// the step in depth (file's lengths), so that times |D| it is a sample's optical depth.
-  AlignedVector<float> base[4], rise[4];
-  float transparent_below = 0;       ///< arguments up to this have no extinction (-infinity: none)
+  std::size_t row_size = 0;  ///< whole vectors
+  AlignedVector<float> table;
+  const float* row(int i) const { return table.data() + static_cast<std::size_t>(i) * row_size; }
+
+  /// Buffer's values up to this have no extinction (-infinity: none such).
+  float transparent_below = 0;
+  float max_depth = 0;               ///< largest extinction times step
   bool zero_is_transparent = false;  ///< a sample that no kernel reaches shows nothing
 };
 

@@ -12,6 +12,7 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -26,16 +27,20 @@ namespace motes {
 namespace HWY_NAMESPACE {
 
 /// 1 - exp(-x) for x >= 0, relative error below 1e-7 (thin samples by the thousand must not drift).
-HWY_INLINE Lanes opacity(LaneTag d, Lanes x) {
-  // Minimax polynomial of (1 - exp(-x)) / x on [0, 1].
-  Lanes p = hn::Set(d, 1.283807181e-04f);
-  p = hn::MulAdd(p, x, hn::Set(d, -1.298663742e-03f));
-  p = hn::MulAdd(p, x, hn::Set(d, 8.273095536e-03f));
-  p = hn::MulAdd(p, x, hn::Set(d, -4.164557738e-02f));
-  p = hn::MulAdd(p, x, hn::Set(d, 1.666630980e-01f));
-  p = hn::MulAdd(p, x, hn::Set(d, -4.999997703e-01f));
-  p = hn::MulAdd(p, x, hn::Set(d, 9.999999975e-01f));
-  const Lanes thin = hn::Mul(p, x);
+/// `may_exceed_one`: x may.
+HWY_INLINE Lanes opacity(LaneTag d, Lanes x, bool may_exceed_one) {
+  // Minimax polynomial of (1 - exp(-x)) / x on [0, 1], in pairs so that the sum is not one long
+  // chain.
+  const auto pair = [&](float constant, float linear) HWY_ATTR {
+    return hn::MulAdd(hn::Set(d, linear), x, hn::Set(d, constant));
+  };
+  const Lanes x2 = hn::Mul(x, x);
+  const Lanes low = hn::MulAdd(pair(1.666630980e-01f, -4.164557738e-02f), x2,
+                               pair(9.999999975e-01f, -4.999997703e-01f));
+  const Lanes high =
+      hn::MulAdd(hn::Set(d, 1.283807181e-04f), x2, pair(8.273095536e-03f, -1.298663742e-03f));
+  const Lanes thin = hn::Mul(hn::MulAdd(high, hn::Mul(x2, x2), low), x);
+  if (!may_exceed_one) return thin;
   const LaneMask is_thick = hn::Gt(x, hn::Set(d, 1.0f));
   if (HWY_LIKELY(hn::AllFalse(d, is_thick))) return thin;
   const Lanes thick = hn::Sub(hn::Set(d, 1.0f), hn::Exp(d, hn::Neg(hn::Min(x, hn::Set(d, 80.0f)))));
@@ -48,45 +53,68 @@ struct TablePlace {
   Lanes fraction;  ///< of the segment, in [0, 1]: clamped at the table's ends
 };
 
-/// table[segment] of each lane.
-HWY_INLINE Lanes look_up(LaneTag d, const AlignedVector<float>& table, int size,
-                         hn::Vec<hn::RebindToSigned<LaneTag>> segment) {
-  if (size == 1) return hn::Set(d, table[0]);
-  if (static_cast<std::size_t>(size) <= hn::Lanes(d)) {
-    return hn::TableLookupLanes(hn::Load(d, table.data()), hn::IndicesFromVec(d, segment));
-  }
-  return hn::GatherIndex(d, table.data(), segment);
+/// How a table is read: a single segment is a broadcast, a row of one vector a permutation.
+enum class TableKind { one_segment, one_vector, many };
+
+HWY_INLINE TableKind kind_of(const Classifier& c) {
+  if (c.num_segments == 1) return TableKind::one_segment;
+  const bool one_vector = static_cast<std::size_t>(c.num_segments) <= hn::Lanes(LaneTag());
+  return one_vector ? TableKind::one_vector : TableKind::many;
 }
 
+/// A row of the table. Known to the compiler where a row is one vector.
+template <TableKind kKind>
+HWY_INLINE const float* row_of(const Classifier& c, int row) {
+  if constexpr (kKind == TableKind::many) return c.row(row);
+  return c.table.data() + row * max_lanes;
+}
+
+/// row[segment] of each lane.
+template <TableKind kKind>
+HWY_INLINE Lanes look_up(LaneTag d, const Classifier& c, int row,
+                         hn::Vec<hn::RebindToSigned<LaneTag>> segment) {
+  const float* const entries = row_of<kKind>(c, row);
+  if constexpr (kKind == TableKind::one_segment) {
+    return hn::Set(d, entries[0]);
+  } else if constexpr (kKind == TableKind::one_vector) {
+    return hn::TableLookupLanes(hn::Load(d, entries), hn::IndicesFromVec(d, segment));
+  } else {
+    return hn::GatherIndex(d, entries, segment);
+  }
+}
+
+template <TableKind kKind>
 HWY_INLINE TablePlace find_segment(LaneTag d, const Classifier& c, Lanes argument) {
   const hn::RebindToSigned<LaneTag> di;
   auto segment = hn::Zero(di);
-  if (c.num_segments <= 2 * max_lanes) {
+  const float* const begins = row_of<kKind>(c, Classifier::begin);
+  if (kKind != TableKind::one_segment && c.num_segments <= 2 * max_lanes) {
     for (int s = 1; s < c.num_segments; ++s) {
-      const auto behind = hn::Ge(argument, hn::Set(d, c.begin[static_cast<std::size_t>(s)]));
+      const auto behind = hn::Ge(argument, hn::Set(d, begins[s]));
       segment = hn::Sub(segment, hn::VecFromMask(di, hn::RebindMask(di, behind)));
     }
-  } else {
+  } else if constexpr (kKind == TableKind::many) {
     // Bisection: the last segment whose begin is not above the argument.
     int span = 1;
     while (span < c.num_segments) span *= 2;
     for (span /= 2; span > 0; span /= 2) {
       const auto candidate =
           hn::Min(hn::Add(segment, hn::Set(di, span)), hn::Set(di, c.num_segments - 1));
-      const auto behind = hn::Ge(argument, hn::GatherIndex(d, c.begin.data(), candidate));
+      const auto behind = hn::Ge(argument, hn::GatherIndex(d, begins, candidate));
       segment = hn::IfThenElse(hn::RebindMask(di, behind), candidate, segment);
     }
   }
-  const Lanes begin = look_up(d, c.begin, c.num_segments, segment);
-  const Lanes inverse_width = look_up(d, c.inverse_width, c.num_segments, segment);
+  const Lanes begin = look_up<kKind>(d, c, Classifier::begin, segment);
+  const Lanes inverse_width = look_up<kKind>(d, c, Classifier::inverse_width, segment);
   const Lanes fraction = hn::Mul(hn::Sub(argument, begin), inverse_width);
   return {segment, hn::Min(hn::Max(fraction, hn::Zero(d)), hn::Set(d, 1.0f))};
 }
 
 /// Red, green, blue (0 to 2) or extinction times step (3) at a place of the table.
+template <TableKind kKind>
 HWY_INLINE Lanes table_value(LaneTag d, const Classifier& c, int i, const TablePlace& place) {
-  return hn::MulAdd(place.fraction, look_up(d, c.rise[i], c.num_segments, place.segment),
-                    look_up(d, c.base[i], c.num_segments, place.segment));
+  return hn::MulAdd(place.fraction, look_up<kKind>(d, c, Classifier::rise + i, place.segment),
+                    look_up<kKind>(d, c, Classifier::base + i, place.segment));
 }
 
 /// The classifier's argument for the buffer's values. Finite also where there is no logarithm, so
@@ -101,9 +129,28 @@ HWY_INLINE Lanes argument_of(LaneTag d, const Classifier& c, Lanes value) {
 
 /// x^power for x in [0, 1], power > 0.
 HWY_INLINE Lanes power_of(LaneTag d, Lanes x, float power) {
+  // Whole numbers are the usual case: x^32 is five multiplications.
+  const auto whole = static_cast<unsigned>(std::min(power, 1024.0f));
+  if (static_cast<float>(whole) == power) {
+    Lanes result = hn::Set(d, 1.0f);
+    for (unsigned bits = whole; bits != 0; bits >>= 1) {
+      if ((bits & 1) != 0) result = hn::Mul(result, x);
+      x = hn::Mul(x, x);
+    }
+    return result;
+  }
   const Lanes tiny = hn::Set(d, std::numeric_limits<float>::min());
   const Lanes exponent = hn::Mul(hn::Set(d, power), hn::Log(d, hn::Max(x, tiny)));
   return hn::IfThenZeroElse(hn::Lt(x, tiny), hn::Exp(d, hn::Max(exponent, hn::Set(d, -86.0f))));
+}
+
+/// 1 / sqrt(x), relative error below 4e-7; 0 for x = 0 and whatever is too small to be told from it.
+HWY_INLINE Lanes inverse_sqrt(LaneTag d, Lanes x) {
+  const Lanes guess = hn::ApproximateReciprocalSqrt(x);
+  // One step of Newton's method.
+  const Lanes half = hn::Mul(hn::Mul(hn::Set(d, 0.5f), x), guess);
+  const Lanes better = hn::Mul(guess, hn::NegMulAdd(half, guess, hn::Set(d, 1.5f)));
+  return hn::IfThenElseZero(hn::Gt(x, hn::Set(d, 1e-36f)), better);
 }
 
 /// Light on the samples of a field: factor on the colour, and what is added to it.
@@ -119,15 +166,15 @@ HWY_INLINE Light light_field(LaneTag d, const ShadingConstants& shading, const S
   Lanes g[3];
   for (std::size_t i = 0; i < 3; ++i) g[i] = hn::Load(d, channels + (1 + i) * lanes);
   const Lanes norm_sq = hn::MulAdd(g[0], g[0], hn::MulAdd(g[1], g[1], hn::Mul(g[2], g[2])));
-  const Lanes norm = hn::Sqrt(norm_sq);
+  Lanes inverse_norm = inverse_sqrt(d, norm_sq);
   // Where kernels cancel there is no normal.
   const Lanes absolute = hn::Abs(hn::Load(
       d, channels +
              (layout.absolute ? static_cast<std::size_t>(layout.absolute_channel()) * lanes : 0)));
+  const Lanes norm = hn::Mul(norm_sq, inverse_norm);
   const LaneMask has_normal =
-      hn::And(hn::Ge(hn::Mul(norm, hn::Set(d, min_radius)), hn::Mul(hn::Set(d, 1e-6f), absolute)),
-              hn::Gt(norm, hn::Zero(d)));
-  const Lanes inverse_norm = hn::IfThenElseZero(has_normal, hn::Div(hn::Set(d, 1.0f), norm));
+      hn::Ge(hn::Mul(norm, hn::Set(d, min_radius)), hn::Mul(hn::Set(d, 1e-6f), absolute));
+  inverse_norm = hn::IfThenElseZero(has_normal, inverse_norm);
 
   const auto along = [&](const Lanes v[3]) HWY_ATTR {
     const Lanes sum = hn::MulAdd(g[0], v[0], hn::MulAdd(g[1], v[1], hn::Mul(g[2], v[2])));
@@ -142,10 +189,8 @@ HWY_INLINE Light light_field(LaneTag d, const ShadingConstants& shading, const S
       l[i] = hn::Set(d, shading.light[i]);
       h[i] = hn::Add(l[i], to_eye[i]);
     }
-    const Lanes h_norm =
-        hn::Sqrt(hn::MulAdd(h[0], h[0], hn::MulAdd(h[1], h[1], hn::Mul(h[2], h[2]))));
     const Lanes h_scale =
-        hn::IfThenElseZero(hn::Gt(h_norm, hn::Zero(d)), hn::Div(hn::Set(d, 1.0f), h_norm));
+        inverse_sqrt(d, hn::MulAdd(h[0], h[0], hn::MulAdd(h[1], h[1], hn::Mul(h[2], h[2]))));
     for (Lanes& component : h) component = hn::Mul(component, h_scale);
     n_l = along(l);
     n_h = along(h);
@@ -154,92 +199,232 @@ HWY_INLINE Light light_field(LaneTag d, const ShadingConstants& shading, const S
           hn::Mul(hn::Set(d, shading.specular), power_of(d, n_h, shading.shininess))};
 }
 
-/// The part of a packet's rays that lies in a slab, relative to it.
-struct LivePart {
-  Lanes first, last;  ///< of each lane; first > last: none
-  int begin, end;     ///< of all lanes, both included; begin > end: none
+/// The samples of one block in a buffer.
+struct BlockSamples {
+  const float* first;     ///< sample 0, field 0, channel 0
+  std::ptrdiff_t stride;  ///< floats from a sample to the next
+  std::ptrdiff_t field_stride;
+  const float* at(int sample, std::size_t field) const {
+    return first + sample * stride + static_cast<std::ptrdiff_t>(field) * field_stride;
+  }
 };
 
-HWY_INLINE LivePart live_part(LaneTag d, const RayState& rays, const Slab& slab) {
-  const Lanes slab_first = hn::Set(d, static_cast<float>(slab.first));
-  const Lanes slab_last = hn::Set(d, static_cast<float>(slab.count - 1));
-  LivePart live;
-  live.first = hn::Max(hn::Sub(hn::Load(d, rays.first), slab_first), hn::Zero(d));
-  live.last = hn::Min(hn::Sub(hn::Load(d, rays.last), slab_first), slab_last);
-  const LaneMask any = hn::Le(live.first, live.last);
-  const Lanes none = hn::Set(d, -1.0f);
-  live.begin = static_cast<int>(
-      hn::GetLane(hn::MinOfLanes(d, hn::IfThenElse(any, live.first, hn::Add(slab_last, slab_last)))));
-  live.end = static_cast<int>(hn::GetLane(hn::MaxOfLanes(d, hn::IfThenElse(any, live.last, none))));
-  return live;
-}
-
-/// Composites the samples of `slab` in block `block` of the buffer into the rays' colours. A ray that
-/// reaches the termination opacity ends. Hot: nothing is checked.
-inline HWY_NOINLINE void integrate(const std::vector<Classifier>& classifiers,
-                                   const ShadingConstants& shading, const Slab& slab,
-                                   SampleBuffer& buffer, int block, RayState& rays) {
-  const LaneTag d;
-  const SampleLayout& layout = buffer.layout();
-  const LivePart part = live_part(d, rays, slab);
-  Lanes last = part.last;
-  const Lanes direction_x = hn::Load(d, rays.direction_x);
-  const Lanes direction_y = hn::Load(d, rays.direction_y);
-  const Lanes length = hn::Sqrt(hn::MulAdd(
-      direction_x, direction_x, hn::MulAdd(direction_y, direction_y, hn::Set(d, 1.0f))));
-  const Lanes toward = hn::Div(hn::Set(d, -1.0f), length);
-  const Lanes to_eye[3] = {hn::Mul(direction_x, toward), hn::Mul(direction_y, toward), toward};
-
-  const bool skip_untouched =
-      std::all_of(classifiers.begin(), classifiers.end(),
-                  [](const Classifier& c) { return c.zero_is_transparent; });
-  const Lanes one = hn::Set(d, 1.0f), zero = hn::Zero(d);
-  Lanes color[3] = {hn::Load(d, rays.r), hn::Load(d, rays.g), hn::Load(d, rays.b)};
-  Lanes alpha = hn::Load(d, rays.a);
-  for (int k = part.begin; k <= part.end; ++k) {
-    const int cell = buffer.cell(k, block);
-    if (skip_untouched && !buffer.touched(cell)) continue;
-    const Lanes index = hn::Set(d, static_cast<float>(k));
-    const LaneMask live = hn::And(hn::Le(part.first, index), hn::Le(index, last));
-    bool anything = false;
-    for (std::size_t f = 0; f < classifiers.size(); ++f) {
-      const Classifier& c = classifiers[f];
-      const float* const channels = buffer.at(cell, static_cast<int>(f));
-      const Lanes argument = argument_of(d, c, hn::Load(d, channels));
-      LaneMask visible = hn::And(live, hn::Gt(argument, hn::Set(d, c.transparent_below)));
-      if (hn::AllFalse(d, visible)) continue;
-      const TablePlace place = find_segment(d, c, argument);
-      const Lanes depth = hn::Mul(table_value(d, c, 3, place), length);
-      visible = hn::And(visible, hn::Gt(depth, zero));
-      if (hn::AllFalse(d, visible)) continue;
-
-      anything = true;
-      Light light{one, zero};
-      if (layout.gradients) {
-        light = light_field(d, shading, layout, shading.min_radius[f], channels, to_eye);
-      }
-      const Lanes weight =
-          hn::Mul(hn::Sub(one, alpha), hn::IfThenElseZero(visible, opacity(d, depth)));
-      for (int i = 0; i < 3; ++i) {
-        const Lanes lit = hn::MulAdd(table_value(d, c, i, place), light.factor, light.highlight);
-        color[i] = hn::MulAdd(weight, lit, color[i]);
-      }
-      alpha = hn::Add(alpha, weight);
-    }
-    if (!anything) continue;
-    // After all fields of a sample: rays that are opaque enough end here.
-    const LaneMask ended = hn::And(live, hn::Gt(alpha, hn::Set(d, shading.termination_opacity)));
-    if (HWY_UNLIKELY(!hn::AllFalse(d, ended))) {
-      last = hn::IfThenElse(ended, index, last);
-      const Lanes frame_index = hn::Set(d, static_cast<float>(slab.first + k));
-      hn::Store(hn::IfThenElse(ended, frame_index, hn::Load(d, rays.last)), d, rays.last);
-      if (hn::AllFalse(d, hn::Gt(last, index))) break;
+/// Bit i: some ray may see sample begin + i. At most 64 samples, begin to end.
+HWY_INLINE std::uint64_t visible_samples(LaneTag d, const std::vector<Classifier>& classifiers,
+                                         int begin, int end, const BlockSamples& samples) {
+  std::uint64_t visible = 0;
+  for (std::size_t f = 0; f < classifiers.size(); ++f) {
+    const Lanes clear = hn::Set(d, classifiers[f].transparent_below);
+    const float* values = samples.at(begin, f);
+    for (int i = 0; i <= end - begin; ++i, values += samples.stride) {
+      const bool any = !hn::AllFalse(d, hn::Gt(hn::Load(d, values), clear));
+      visible |= static_cast<std::uint64_t>(any) << i;
     }
   }
-  hn::Store(color[0], d, rays.r);
-  hn::Store(color[1], d, rays.g);
-  hn::Store(color[2], d, rays.b);
-  hn::Store(alpha, d, rays.a);
+  return visible;
+}
+
+/// What a field adds to rays at one sample.
+struct Contribution {
+  Lanes opacity;
+  Lanes color[3];  ///< lit; not weighted by the opacity
+};
+
+/// Colours of a block's rays so far.
+struct BlockColors {
+  Lanes color[3], alpha;
+
+  /// Adds one field's part of a sample, whose opacity is 0 where there is none. Listing 1 of the
+  /// paper.
+  HWY_INLINE void composite(LaneTag d, Lanes sample_opacity, const Lanes* sample_color) {
+    const Lanes transparency = hn::Sub(hn::Set(d, 1.0f), alpha);
+    const Lanes weight = hn::Mul(transparency, sample_opacity);
+    color[0] = hn::MulAdd(weight, sample_color[0], color[0]);
+    color[1] = hn::MulAdd(weight, sample_color[1], color[1]);
+    color[2] = hn::MulAdd(weight, sample_color[2], color[2]);
+    // Not alpha + weight: rays wait for their alpha, and this is one operation less.
+    alpha = hn::MulAdd(transparency, sample_opacity, alpha);
+  }
+};
+
+/// Rays of a block on their way through a slab, samples counted from its begin.
+struct BlockRays {
+  Lanes first, last;
+  bool any_ended = false;  ///< in this slab
+
+  HWY_INLINE LaneMask live_at(Lanes index) const {
+    return hn::And(hn::Le(first, index), hn::Le(index, last));
+  }
+  HWY_INLINE void end_at(LaneMask ends, Lanes index) {
+    last = hn::IfThenElse(ends, index, last);
+    any_ended = true;
+  }
+};
+
+/// What a block's samples are classified and lit with.
+struct BlockShading {
+  const std::vector<Classifier>& classifiers;
+  const ShadingConstants& constants;
+  const SampleLayout& layout;
+  Lanes length;
+  Lanes to_eye[3];  ///< with gradients
+
+  template <bool kGradients, TableKind kKind>
+  HWY_INLINE void classify_as(LaneTag d, std::size_t field, const float* channels,
+                              Contribution& out) const {
+    const Classifier& c = classifiers[field];
+    const Lanes argument = argument_of(d, c, hn::Load(d, channels));
+    const TablePlace place = find_segment<kKind>(d, c, argument);
+    const bool may_exceed_one = c.max_depth * constants.max_ray_length > 1;
+    out.opacity = opacity(d, hn::Mul(table_value<kKind>(d, c, 3, place), length), may_exceed_one);
+    out.color[0] = table_value<kKind>(d, c, 0, place);
+    out.color[1] = table_value<kKind>(d, c, 1, place);
+    out.color[2] = table_value<kKind>(d, c, 2, place);
+    if constexpr (kGradients) {
+      const Light light =
+          light_field(d, constants, layout, constants.min_radius[field], channels, to_eye);
+      for (Lanes& channel : out.color) {
+        channel = hn::MulAdd(channel, light.factor, light.highlight);
+      }
+    }
+  }
+};
+
+/// Adds the samples whose bits are set (bit i: sample `begin` + i) of the only field. Each is a
+/// long chain of operations: two side by side keep the processor busy.
+template <bool kGradients, TableKind kKind>
+HWY_INLINE void add_samples(LaneTag d, const BlockShading& shading, const BlockSamples& samples,
+                            int begin, std::uint64_t visible, BlockRays& rays,
+                            BlockColors& colors) {
+  constexpr float no_sample = std::numeric_limits<float>::max();
+  const Lanes termination = hn::Set(d, shading.constants.termination_opacity);
+  while (visible != 0) {
+    const int k = begin + std::countr_zero(visible);
+    visible &= visible - 1;
+    const int next = visible != 0 ? begin + std::countr_zero(visible) : k;
+    visible &= visible - 1;
+    const Lanes index = hn::Set(d, static_cast<float>(k));
+    const Lanes next_index = hn::Set(d, next != k ? static_cast<float>(next) : no_sample);
+    const LaneMask live = rays.live_at(index), next_live = rays.live_at(next_index);
+    Contribution a, b;
+    shading.classify_as<kGradients, kKind>(d, 0, samples.at(k, 0), a);
+    shading.classify_as<kGradients, kKind>(d, 0, samples.at(next, 0), b);
+    colors.composite(d, hn::IfThenElseZero(live, a.opacity), a.color);
+    BlockColors both = colors;
+    both.composite(d, hn::IfThenElseZero(next_live, b.opacity), b.color);
+    // Rays that are opaque enough end: seldom, so only then it is asked at which of the two
+    // samples.
+    const LaneMask opaque = hn::Gt(both.alpha, termination);
+    if (HWY_UNLIKELY(!hn::AllFalse(d, hn::And(hn::Or(live, next_live), opaque)))) {
+      const LaneMask ends = hn::And(live, hn::Gt(colors.alpha, termination));
+      const LaneMask goes_on = hn::AndNot(ends, next_live);
+      both = colors;
+      both.composite(d, hn::IfThenElseZero(goes_on, b.opacity), b.color);
+      rays.end_at(ends, index);
+      rays.end_at(hn::And(goes_on, hn::Gt(both.alpha, termination)), next_index);
+      colors = both;
+      if (hn::AllFalse(d, hn::Gt(rays.last, next != k ? next_index : index))) return;
+    }
+    colors = both;
+  }
+}
+
+/// The same with several fields, at each sample in their order.
+template <bool kGradients>
+HWY_INLINE void add_fields(LaneTag d, const BlockShading& shading, const BlockSamples& samples,
+                           int begin, std::uint64_t visible, BlockRays& rays, BlockColors& colors) {
+  const Lanes termination = hn::Set(d, shading.constants.termination_opacity);
+  for (; visible != 0; visible &= visible - 1) {
+    const int k = begin + std::countr_zero(visible);
+    const Lanes index = hn::Set(d, static_cast<float>(k));
+    const LaneMask live = rays.live_at(index);
+    for (std::size_t f = 0; f < shading.classifiers.size(); ++f) {
+      const float* const channels = samples.at(k, f);
+      const Classifier& c = shading.classifiers[f];
+      const LaneMask seen =
+          hn::And(live, hn::Gt(hn::Load(d, channels), hn::Set(d, c.transparent_below)));
+      if (hn::AllFalse(d, seen)) continue;
+      Contribution a;
+      switch (kind_of(c)) {
+        case TableKind::one_segment:
+          shading.classify_as<kGradients, TableKind::one_segment>(d, f, channels, a);
+          break;
+        case TableKind::one_vector:
+          shading.classify_as<kGradients, TableKind::one_vector>(d, f, channels, a);
+          break;
+        case TableKind::many:
+          shading.classify_as<kGradients, TableKind::many>(d, f, channels, a);
+      }
+      colors.composite(d, hn::IfThenElseZero(live, a.opacity), a.color);
+    }
+    // After all fields of a sample: rays that are opaque enough end here.
+    const LaneMask ends = hn::And(live, hn::Gt(colors.alpha, termination));
+    if (HWY_UNLIKELY(!hn::AllFalse(d, ends))) {
+      rays.end_at(ends, index);
+      if (hn::AllFalse(d, hn::Gt(rays.last, index))) return;
+    }
+  }
+}
+
+/// Composites the samples of `slab` in block `block` of the buffer into the rays' colours. A ray
+/// that reaches the termination opacity ends. Hot: nothing is checked.
+template <bool kGradients>
+HWY_NOINLINE void integrate_block(const std::vector<Classifier>& classifiers,
+                                  const ShadingConstants& constants, const Slab& slab,
+                                  SampleBuffer& buffer, int block, RayState& rays) {
+  const LaneTag d;
+  const SampleLayout& layout = buffer.layout();
+  const BlockSamples samples{
+      buffer.at(block, 0),
+      static_cast<std::ptrdiff_t>(layout.floats_per_sample()) * buffer.num_blocks(),
+      static_cast<std::ptrdiff_t>(layout.channels() * layout.lanes)};
+  const Lanes slab_first = hn::Set(d, static_cast<float>(slab.first));
+  const Lanes length = hn::Load(d, rays.length);
+  BlockShading shading{classifiers, constants, layout, length, {length, length, length}};
+  if constexpr (kGradients) {
+    shading.to_eye[2] = hn::Div(hn::Set(d, -1.0f), length);
+    shading.to_eye[0] = hn::Mul(hn::Load(d, rays.direction_x), shading.to_eye[2]);
+    shading.to_eye[1] = hn::Mul(hn::Load(d, rays.direction_y), shading.to_eye[2]);
+  }
+  BlockRays state{hn::Sub(hn::Load(d, rays.first), slab_first),
+                  hn::Sub(hn::Load(d, rays.last), slab_first)};
+  BlockColors colors{{hn::Load(d, rays.r), hn::Load(d, rays.g), hn::Load(d, rays.b)},
+                     hn::Load(d, rays.a)};
+  int end = std::min(rays.end - slab.first, slab.count - 1);
+  for (int part = std::max(rays.begin - slab.first, 0); part <= end; part += 64) {
+    const std::uint64_t visible =
+        visible_samples(d, classifiers, part, std::min(part + 63, end), samples);
+    if (classifiers.size() != 1) {
+      add_fields<kGradients>(d, shading, samples, part, visible, state, colors);
+    } else if (kind_of(classifiers[0]) == TableKind::one_segment) {
+      add_samples<kGradients, TableKind::one_segment>(d, shading, samples, part, visible, state,
+                                                      colors);
+    } else if (kind_of(classifiers[0]) == TableKind::one_vector) {
+      add_samples<kGradients, TableKind::one_vector>(d, shading, samples, part, visible, state,
+                                                     colors);
+    } else {
+      add_samples<kGradients, TableKind::many>(d, shading, samples, part, visible, state, colors);
+    }
+    if (state.any_ended) {
+      const int last_live = static_cast<int>(hn::GetLane(hn::MaxOfLanes(d, state.last)));
+      rays.end = slab.first + last_live;
+      end = std::min(end, last_live);
+    }
+  }
+  hn::Store(colors.color[0], d, rays.r);
+  hn::Store(colors.color[1], d, rays.g);
+  hn::Store(colors.color[2], d, rays.b);
+  hn::Store(colors.alpha, d, rays.a);
+  hn::Store(hn::Add(state.last, slab_first), d, rays.last);
+}
+
+inline void integrate(const std::vector<Classifier>& classifiers, const ShadingConstants& shading,
+                      const Slab& slab, SampleBuffer& buffer, int block, RayState& rays) {
+  if (buffer.layout().gradients) {
+    integrate_block<true>(classifiers, shading, slab, buffer, block, rays);
+  } else {
+    integrate_block<false>(classifiers, shading, slab, buffer, block, rays);
+  }
 }
 
 }  // namespace HWY_NAMESPACE

@@ -7,6 +7,7 @@ namespace motes {
 
 struct ShadingConstants {
   float termination_opacity = 0.97f;
+  float max_ray_length = 1;  ///< largest |D| of the frame's rays
   float ambient = 1, diffuse = 0, specular = 0,
         shininess = 1;  ///< used where the buffer has gradients
   bool headlight = true;

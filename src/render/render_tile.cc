@@ -1,7 +1,12 @@
 #include "render/render_tile.h"
 
 #include <algorithm>
+#include <bit>
+#include <climits>
 #include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/render_tile.cc"
@@ -11,8 +16,10 @@
 
 #include "field/coherent-inl.h"
 #include "field/direct-inl.h"
+#include "field/sweep-inl.h"
 #include "integrate/integrate-inl.h"
 #include "render/ray_packets.h"
+#include "render/ray_state-inl.h"
 #include "samples/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -36,18 +43,6 @@ std::uint64_t sample_field(const FrameContext& context, const SamplingConstants&
   return sample.template operator()<false, false>();
 }
 
-/// First and last sample of any ray; first > last: none.
-struct SampleRange {
-  SampleIndex first, last;
-};
-
-SampleRange live_range(const RayState& rays) {
-  const LaneTag d;
-  constexpr Slab everything{0, 1 << 28};  // a frame has at most 1e7 planes
-  const LivePart part = live_part(d, rays, everything);
-  return {part.begin, part.end};
-}
-
 /// Samples of all rays, up to each ray's end.
 std::uint64_t count_samples(const RayState& rays) {
   std::uint64_t samples = 0;
@@ -59,15 +54,14 @@ std::uint64_t count_samples(const RayState& rays) {
 
 /// Writes the colours of the packet whose top left pixel is (px, py).
 void store_pixels(const RayState& rays, int px, int py, int width, Framebuffer& image) {
-  const int lanes = static_cast<int>(hn::Lanes(LaneTag()));
-  for (int l = 0; l < lanes; ++l) {
-    const int x = px + l % width, y = py + l / width;
-    if (x >= image.width || y >= image.height) continue;
-    float* const pixel = image.pixel(x, y);
-    pixel[0] = rays.r[l];
-    pixel[1] = rays.g[l];
-    pixel[2] = rays.b[l];
-    pixel[3] = rays.a[l];
+  const LaneTag d;
+  alignas(64) float rgba[4 * max_lanes];
+  hn::StoreInterleaved4(hn::Load(d, rays.r), hn::Load(d, rays.g), hn::Load(d, rays.b),
+                        hn::Load(d, rays.a), d, rgba);
+  const int columns = std::min(width, image.width - px);
+  const int rows = std::min(static_cast<int>(hn::Lanes(d)) / width, image.height - py);
+  for (int row = 0; row < rows; ++row) {
+    std::copy_n(rgba + 4 * width * row, 4 * std::max(columns, 0), image.pixel(px, py + row));
   }
 }
 
@@ -76,38 +70,153 @@ void store_pixels(const RayState& rays, int px, int py, int width, Framebuffer& 
 std::uint64_t render_packet(const FrameContext& context, const SamplingConstants& constants,
                             const RayPacket& packet, SampleBuffer& buffer, RayState& rays) {
   std::uint64_t evaluations = 0;
-  SampleRange range = live_range(rays);
-  for (SampleIndex k = range.first; k <= range.last; k += context.samples_per_pass) {
-    const Slab slab{k, std::min(range.last - k + 1, context.samples_per_pass)};
+  for (SampleIndex k = rays.begin; k <= rays.end; k += context.samples_per_pass) {
+    const Slab slab{k, std::min(rays.end - k + 1, context.samples_per_pass)};
     buffer.reserve(slab.count);
     evaluations += sample_field(context, constants, packet, slab, buffer);
     integrate(context.classifiers, context.shading, slab, buffer, 0, rays);
-    buffer.clear();
-    range = live_range(rays);
+    clear_touched(buffer);
   }
   return evaluations;
 }
 
-TileCounts render_tile(const FrameContext& context, const Tile& tile, Framebuffer& image) {
+SampleLayout make_layout(const FrameContext& context) {
+  return {.num_fields = static_cast<int>(context.classifiers.size()),
+          .gradients = context.gradients,
+          .absolute = context.absolute,
+          .lanes = static_cast<int>(hn::Lanes(LaneTag()))};
+}
+
+/// Packet by packet, as the paper does.
+TileCounts render_packets(const FrameContext& context, const Tile& tile, Framebuffer& image) {
   const int lanes = static_cast<int>(hn::Lanes(LaneTag()));
   const int packet_width = lanes >= 8 ? 4 : 2, packet_height = lanes / packet_width;
   const SamplingConstants constants = make_constants(*context.kernels);
-  const SampleLayout layout{.num_fields = static_cast<int>(context.classifiers.size()),
-                            .gradients = context.gradients,
-                            .absolute = context.absolute,
-                            .lanes = lanes};
-  SampleBuffer buffer(layout, std::min(context.samples_per_pass, 64));
+  SampleBuffer buffer(make_layout(context), std::min(context.samples_per_pass, 64));
   TileCounts counts;
   for (int py = tile.y; py < tile.y + tile.height; py += packet_height) {
     for (int px = tile.x; px < tile.x + tile.width; px += packet_width) {
       const RayPacket packet = make_ray_packet(context, px, py, packet_width, packet_height);
-      RayState rays = make_ray_state(context, px, py, packet_width, packet_height);
+      RayState rays;
+      start_rays(context, px, py, packet_width, packet_height, rays);
       counts.kernel_evaluations += render_packet(context, constants, packet, buffer, rays);
       counts.samples += count_samples(rays);
       store_pixels(rays, px, py, packet_width, image);
     }
   }
   return counts;
+}
+
+/// A tile of the sweep: its rays, block by block.
+struct SweepTile {
+  int x, y;
+  RayBounds bounds;
+  SampleIndex begin[sweep_blocks], end[sweep_blocks];  ///< of each block's rays, as in RayState
+  RayState blocks[sweep_blocks];
+};
+
+void start_tile(const FrameContext& context, int x, int y, SweepTile& tile) {
+  tile.x = x;
+  tile.y = y;
+  tile.bounds = make_ray_bounds(context, x, y, sweep_tile, sweep_tile);
+  for (int b = 0; b < sweep_blocks; ++b) {
+    RayState& rays = tile.blocks[b];
+    start_rays(context, x + b % 4 * 4, y + b / 4 * sweep_block_height, sweep_block_width,
+               sweep_block_height, rays);
+    tile.begin[b] = rays.begin;
+    tile.end[b] = rays.end;
+  }
+}
+
+/// Blocks that have rays under way in the slab, a bit each.
+std::uint64_t live_blocks(const SweepTile& tile, const Slab& slab) {
+  std::uint64_t live = 0;
+  for (int b = 0; b < sweep_blocks; ++b) {
+    const bool is_live = tile.begin[b] < slab.first + slab.count && tile.end[b] >= slab.first;
+    live |= static_cast<std::uint64_t>(is_live) << b;
+  }
+  return live;
+}
+
+/// Pass 1 of the sweep for one tile, with the channels of the frame.
+std::uint64_t sample_tile(const FrameContext& context, const SamplingConstants& constants,
+                          const GatheredKernels& gathered, const SlabFrame& frame,
+                          const SweepTile& tile, std::uint64_t live, SampleBuffer& buffer) {
+  const auto sample = [&]<bool kGradients, bool kAbsolute>() {
+    return sample_sweep<kGradients, kAbsolute>(*context.kernels, constants, context.view, gathered,
+                                               frame, tile.bounds, live, buffer);
+  };
+  if (context.gradients) {
+    return context.absolute ? sample.template operator()<true, true>()
+                            : sample.template operator()<true, false>();
+  }
+  return sample.template operator()<false, false>();
+}
+
+/// Slab by slab: one traversal for all tiles, then tile by tile sampling and integrating.
+TileCounts render_sweep(const FrameContext& context, const Tile& area, Framebuffer& image) {
+  const SamplingConstants constants = make_constants(*context.kernels);
+  const bool zero_is_transparent =
+      std::all_of(context.classifiers.begin(), context.classifiers.end(),
+                  [](const Classifier& c) { return c.zero_is_transparent; });
+  const auto tiles_along = [](int pixels) { return (pixels + sweep_tile - 1) / sweep_tile; };
+  const auto num_tiles =
+      static_cast<std::size_t>(tiles_along(area.width) * tiles_along(area.height));
+  const auto storage = std::make_unique_for_overwrite<SweepTile[]>(num_tiles);
+  const std::span<SweepTile> tiles(storage.get(), num_tiles);
+  std::size_t next_tile = 0;
+  SampleIndex begin = INT_MAX, end = -1;
+  for (int y = area.y; y < area.y + area.height; y += sweep_tile) {
+    for (int x = area.x; x < area.x + area.width; x += sweep_tile) {
+      SweepTile& tile = tiles[next_tile++];
+      start_tile(context, x, y, tile);
+      begin = std::min(begin, *std::min_element(tile.begin, tile.begin + sweep_blocks));
+      end = std::max(end, *std::max_element(tile.end, tile.end + sweep_blocks));
+    }
+  }
+  const RayBounds bounds =
+      make_ray_bounds(context, area.x, area.y, tiles_along(area.width) * sweep_tile,
+                      tiles_along(area.height) * sweep_tile);
+  const int planes = std::min(context.samples_per_pass, max_sweep_planes);
+  SampleBuffer buffer(make_layout(context), planes, sweep_blocks);
+  GatheredKernels gathered;
+  TileCounts counts;
+  while (begin <= end) {
+    const Slab slab{begin, std::min(end - begin + 1, planes)};
+    const SlabFrame frame = make_slab_frame(bounds, slab, context.view);
+    gather_kernels(*context.kernels, constants, frame, make_frustum(bounds, frame, context.view),
+                   gathered);
+    end = -1;
+    for (SweepTile& tile : tiles) {
+      std::uint64_t live = live_blocks(tile, slab);
+      if (live != 0 && gathered.size != 0) {
+        counts.kernel_evaluations +=
+            sample_tile(context, constants, gathered, frame, tile, live, buffer);
+      }
+      if (zero_is_transparent) live &= buffer.touched_blocks();
+      for (; live != 0; live &= live - 1) {
+        const int b = std::countr_zero(live);
+        integrate(context.classifiers, context.shading, slab, buffer, b, tile.blocks[b]);
+        tile.end[b] = tile.blocks[b].end;
+      }
+      clear_touched(buffer);
+      end = std::max(end, *std::max_element(tile.end, tile.end + sweep_blocks));
+    }
+    begin += slab.count;
+  }
+  for (const SweepTile& tile : tiles) {
+    for (int b = 0; b < sweep_blocks; ++b) {
+      counts.samples += count_samples(tile.blocks[b]);
+      store_pixels(tile.blocks[b], tile.x + b % 4 * 4, tile.y + b / 4 * sweep_block_height,
+                   sweep_block_width, image);
+    }
+  }
+  return counts;
+}
+
+TileCounts render_tile(const FrameContext& context, const Tile& tile, Framebuffer& image) {
+  return context.engine == Engine::sweep ? render_sweep(context, tile, image)
+                                         : render_packets(context, tile, image);
 }
 
 }  // namespace HWY_NAMESPACE

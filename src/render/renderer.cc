@@ -102,16 +102,25 @@ FrameContext make_context(const KernelSet& kernels, const ResolvedScene& scene,
     context.absolute = context.absolute || kernels.fields[f].mixed_signs;
   }
   context.shading = make_shading(scene, axes, kernels);
+  if (!context.orthographic) {
+    context.shading.max_ray_length =
+        static_cast<float>(std::hypot(1, context.half_width, context.half_height));
+  }
   context.engine = scene.render.engine;
   context.gradients = scene.render.lighting.enabled;
   context.absolute = context.absolute && context.gradients;
   const int num_fields = static_cast<int>(kernels.fields.size());
-  const int per_pass = options.samples_per_pass.value_or(num_fields == 1 ? 32 : 64 / num_fields);
+  const int default_planes = context.engine == Engine::sweep ? 16
+                             : num_fields == 1               ? 32
+                                                             : 64 / num_fields;
+  const int per_pass = options.samples_per_pass.value_or(default_planes);
   context.samples_per_pass = per_pass == 0 ? max_single_pass : per_pass;
   return context;
 }
 
-constexpr int tile_size = 32;
+/// Pixels of a side of a tile: small ones share out well among threads; the sweep traverses the
+/// tree once for all of a large one.
+int tile_size_of(Engine engine) { return engine == Engine::sweep ? 64 : 32; }
 
 }  // namespace
 
@@ -128,15 +137,27 @@ void Renderer::set_kernel(std::size_t field, const Kernel& kernel) {
 
 Framebuffer Renderer::render(const ResolvedScene& scene, const RenderOptions& options,
                              RenderStatistics* statistics) const {
+  Framebuffer image;
+  render(scene, options, image, statistics);
+  return image;
+}
+
+void Renderer::render(const ResolvedScene& scene, const RenderOptions& options, Framebuffer& image,
+                      RenderStatistics* statistics) const {
   assert(scene.transfer_functions.size() == kernels_.fields.size());
   assert(scene.step_size > 0);
   const std::string target = instruction_set();
   const Stopwatch stopwatch;
-  Framebuffer image(scene.render.width, scene.render.height);
+  if (image.width != scene.render.width || image.height != scene.render.height) {
+    image = Framebuffer(scene.render.width, scene.render.height);
+  }
   const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
   std::atomic<std::uint64_t> samples{0}, evaluations{0};
-  if (kernels_.size() != 0) {
+  if (kernels_.size() == 0) {
+    std::fill(image.rgba.begin(), image.rgba.end(), 0.0f);
+  } else {
     const FrameContext context = make_context(kernels_, scene, options);
+    const int tile_size = tile_size_of(context.engine);
     const int columns = (context.width + tile_size - 1) / tile_size;
     const int rows = (context.height + tile_size - 1) / tile_size;
     std::atomic<int> done{0};
@@ -167,10 +188,9 @@ Framebuffer Renderer::render(const ResolvedScene& scene, const RenderOptions& op
                    samples,
                    evaluations,
                    threads,
-                   scene.render.engine == Engine::direct ? "direct" : "coherent",
+                   std::string(name_of(scene.render.engine)),
                    target};
   }
-  return image;
 }
 
 }  // namespace motes

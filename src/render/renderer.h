@@ -17,7 +17,8 @@ namespace motes {
 struct RenderOptions {
   int threads = 0;  ///< 0: all of the machine's
   /// Planes of samples of one pass over the tree (paper, section 4.2); 0: the whole ray in one
-  /// pass; nullopt: 32 for one field, 64 / M for M fields.
+  /// pass; nullopt: 32 for one field, 64 / M for M fields. The sweep takes at most 32, and 16
+  /// unless told.
   std::optional<int> samples_per_pass;
   Progress* progress = nullptr;
 };
@@ -41,6 +42,9 @@ class Renderer {
   /// that the frame would never end.
   Framebuffer render(const ResolvedScene& scene, const RenderOptions& options,
                      RenderStatistics* statistics = nullptr) const;
+  /// The same into `image`, whose memory is used again where its size is right: frame after frame.
+  void render(const ResolvedScene& scene, const RenderOptions& options, Framebuffer& image,
+              RenderStatistics* statistics = nullptr) const;
 
   /// Changes sigma and kappa of a field; the tree stays.
   void set_kernel(std::size_t field, const Kernel& kernel);

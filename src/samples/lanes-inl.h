@@ -9,6 +9,9 @@
 
 #include <hwy/highway.h>
 
+#include <algorithm>
+#include <bit>
+#include <cstddef>
 #include <cstdint>
 
 #include "samples/samples.h"
@@ -30,6 +33,24 @@ HWY_INLINE unsigned mask_bits(D d, hn::Mask<D> mask) {
   std::uint8_t bytes[8] = {};  // Highway may write up to 8
   hn::StoreMaskBits(d, mask, bytes);
   return (bytes[0] | static_cast<unsigned>(bytes[1]) << 8) & ((1u << hn::Lanes(d)) - 1);
+}
+
+/// Sets what was touched of the buffer back to zero.
+inline void clear_touched(SampleBuffer& buffer) {
+  const LaneTag d;
+  const std::size_t floats = buffer.layout().floats_per_sample();
+  int first_cell = 0;
+  for (std::uint64_t& word : buffer.touched_words()) {
+    float* const values = buffer.at(first_cell, 0);
+    for (std::uint64_t bits = word; bits != 0; bits &= bits - 1) {
+      float* const cell = values + static_cast<std::size_t>(std::countr_zero(bits)) * floats;
+      hn::Store(hn::Zero(d), d, cell);
+      // Most buffers have but one channel; only for more is filling worth a call.
+      if (floats > hn::Lanes(d)) std::fill_n(cell, floats, 0.0f);
+    }
+    word = 0;
+    first_cell += 64;
+  }
 }
 
 }  // namespace HWY_NAMESPACE

@@ -8,6 +8,7 @@
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "core/aligned.h"
 
@@ -39,8 +40,8 @@ inline constexpr int max_lanes = 16;
 /// direction_y, z). Perspective rays have origin 0, orthographic ones direction (0, 0, 1).
 struct RayPacket {
   int lanes = 0;
-  double origin_x[max_lanes], origin_y[max_lanes];
-  double direction_x[max_lanes], direction_y[max_lanes];
+  alignas(64) double origin_x[max_lanes], origin_y[max_lanes];
+  alignas(64) double direction_x[max_lanes], direction_y[max_lanes];
 };
 
 /// How far the rays of a packet have come: what pass 2 reads and changes, one float a lane.
@@ -48,7 +49,9 @@ struct RayState {
   /// Samples inside the volume's box, both included; first > last: none. A ray that ends early has
   /// its last sample moved up. Whole numbers, exact in float: a frame has at most 1e7 planes.
   alignas(64) float first[max_lanes], last[max_lanes];
+  SampleIndex begin = 0, end = -1;  ///< of all lanes; begin > end: none
   alignas(64) float direction_x[max_lanes], direction_y[max_lanes];
+  alignas(64) float length[max_lanes];  ///< of the direction
   alignas(64) float r[max_lanes], g[max_lanes], b[max_lanes], a[max_lanes];
 };
 
@@ -108,7 +111,9 @@ class SampleBuffer {
     }
   }
   /// Marks cells 64 word + i for each bit i.
-  void touch_word(int word, std::uint64_t bits) { touched_[static_cast<std::size_t>(word)] |= bits; }
+  void touch_word(int word, std::uint64_t bits) {
+    touched_[static_cast<std::size_t>(word)] |= bits;
+  }
   bool touched(int cell) const {
     return (touched_[static_cast<std::size_t>(cell) / 64] >> (cell % 64) & 1) != 0;
   }
@@ -120,16 +125,8 @@ class SampleBuffer {
     return num_blocks_ == 64 ? any : any & ((std::uint64_t{1} << num_blocks_) - 1);
   }
 
-  /// Sets what was touched back to zero.
-  void clear() {
-    for (std::size_t word = 0; word < touched_.size(); ++word) {
-      for (std::uint64_t bits = touched_[word]; bits != 0; bits &= bits - 1) {
-        const int cell = static_cast<int>(word) * 64 + std::countr_zero(bits);
-        std::fill_n(at(cell, 0), layout_.floats_per_sample(), 0.0f);
-      }
-      touched_[word] = 0;
-    }
-  }
+  /// A bit for each cell: 64 word + i.
+  std::span<std::uint64_t> touched_words() { return touched_; }
 
  private:
   SampleLayout layout_;

@@ -86,7 +86,7 @@ struct RenderSettings {
   double termination_opacity = 0.97;
   Lighting lighting;
   Color background;
-  Engine engine = Engine::coherent;
+  Engine engine = Engine::sweep;
   bool operator==(const RenderSettings&) const = default;
 };
 

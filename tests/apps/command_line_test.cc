@@ -229,7 +229,7 @@ TEST_F(CommandLine, StatisticsHaveEveryKey) {
   }
   EXPECT_EQ(stats["particles"], 3);
   EXPECT_EQ(stats["threads"], 1);
-  EXPECT_EQ(stats["engine"], "coherent");
+  EXPECT_EQ(stats["engine"], "sweep");
   EXPECT_GT(stats["samples"], 0);
   EXPECT_LE(stats["frame_ms_min"], stats["frame_ms"]);
 }
@@ -440,10 +440,10 @@ TEST_F(CommandLine, ParticlesThatCannotBeDrawnAreCounted) {
   EXPECT_THAT(outcome.err, HasSubstr("2 of 3 particles"));
 }
 
-TEST_F(CommandLine, TheSweepIsAnnouncedAsMissing) {
-  const Outcome outcome = run("render a.xyz -o a.png --size 16x16 --engine sweep --stats s.json");
-  EXPECT_EQ(outcome.status, 0);
-  EXPECT_THAT(outcome.err, StartsWith("motes: warning: the engine 'sweep' is not built yet"));
+TEST_F(CommandLine, StatisticsNameTheEngine) {
+  EXPECT_EQ(run("render a.xyz -o a.png --size 16x16 --stats s.json").status, 0);
+  EXPECT_EQ(nlohmann::json::parse(workspace_.read("s.json"))["engine"], "sweep");
+  EXPECT_EQ(run("render a.xyz -o a.png --size 16x16 --engine coherent --stats s.json").status, 0);
   EXPECT_EQ(nlohmann::json::parse(workspace_.read("s.json"))["engine"], "coherent");
 }
 

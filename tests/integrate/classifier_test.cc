@@ -37,10 +37,10 @@ TEST(Classifier, SpeaksTheBuffersUnits) {
   const TransferFunction f{{{4, {1, 0, 0}, 0}, {8, {1, 1, 0}, 6}}, false};
   const Classifier c = compile_transfer_function(f, 0.25, 0.5);
   EXPECT_EQ(c.num_segments, 1);
-  EXPECT_EQ(c.begin[0], 1);
-  EXPECT_EQ(c.inverse_width[0], 1);
-  EXPECT_EQ(c.rise[3][0], 3);  // extinction times step
-  EXPECT_EQ(c.rise[1][0], 1);
+  EXPECT_EQ(c.row(Classifier::begin)[0], 1);
+  EXPECT_EQ(c.row(Classifier::inverse_width)[0], 1);
+  EXPECT_EQ(c.row(Classifier::rise + 3)[0], 3);  // extinction times step
+  EXPECT_EQ(c.row(Classifier::rise + 1)[0], 1);
 }
 
 }  // namespace

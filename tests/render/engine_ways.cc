@@ -7,8 +7,7 @@
 namespace motes {
 
 std::string Way::name() const {
-  return fmt::format("{} on {}, {} samples a pass",
-                     engine == Engine::coherent ? "coherent" : "direct", instruction_set,
+  return fmt::format("{} on {}, {} samples a pass", name_of(engine), instruction_set,
                      samples_per_pass ? std::to_string(*samples_per_pass) : "default");
 }
 
@@ -17,6 +16,9 @@ std::vector<Way> all_ways() {
   for (const std::string& set : instruction_sets()) {
     for (const std::optional<int> samples_per_pass : {std::optional<int>{}, {0}, {7}}) {
       ways.push_back({set, Engine::coherent, samples_per_pass});
+    }
+    for (const std::optional<int> samples_per_pass : {std::optional<int>{}, {7}}) {
+      ways.push_back({set, Engine::sweep, samples_per_pass});
     }
     ways.push_back({set, Engine::direct, {}});
   }
