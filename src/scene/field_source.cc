@@ -257,13 +257,14 @@ void color_by_species(Scene& scene, const ParticleSet& particles) {
   if (has_sizes(particles)) return;
   std::vector<bool> present(particles.species_names.size());
   for (const std::uint16_t s : particles.species) present[s] = true;
-  std::size_t num_present = 0;
+  std::set<const Element*> elements;  // several species may be of one: C, C1, C2
   for (std::size_t s = 0; s < present.size(); ++s) {
     if (!present[s]) continue;
-    if (find_element(particles.species_names[s]) == nullptr) return;
-    ++num_present;
+    const Element* element = find_element(particles.species_names[s]);
+    if (element == nullptr) return;
+    elements.insert(element);
   }
-  if (num_present < 2 || num_present > max_colored_species) return;
+  if (elements.size() < 2 || elements.size() > max_colored_species) return;
   if (scene.fields.empty()) scene.fields.emplace_back().name = "all";
   Field& field = scene.fields.front();
   const bool open = field.transfer_function.index() == 0 && field.select == Selection{};

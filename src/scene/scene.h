@@ -147,7 +147,7 @@ std::string scene_to_json(const Scene& scene, const std::filesystem::path& direc
 std::vector<std::uint32_t> select_particles(const ParticleSet& particles, const Selection& select);
 
 /// Gives a scene whose one field takes all particles and has no transfer function (or that has no
-/// field) the species' colours, where there are two to eight species, all of them elements, and no
+/// field) the species' colours, where all species are elements, two to eight different ones, and no
 /// particle has a size of its own: for molecules and solids, not for densities.
 void color_by_species(Scene& scene, const ParticleSet& particles);
 

@@ -332,6 +332,9 @@ decltype(Field::transfer_function) read_transfer_function(const std::filesystem:
 
 bool is_scene_file(const std::filesystem::path& path) {
   if (path.extension() == ".json") return true;
+  // Opening a pipe would wait for its writer.
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return false;
   std::ifstream stream(path, std::ios::binary);
   std::string head(65536, '\0');
   stream.read(head.data(), static_cast<std::streamsize>(head.size()));

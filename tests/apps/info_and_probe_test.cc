@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -23,6 +24,13 @@ TEST_F(CommandLine, NamesOfTypesThatAreNotThereAreTold) {
   EXPECT_EQ(run("info a.dump --types 1=O,3=Si").err,
             "motes: warning: a.dump: has no type 3 to be named Si; there are: 1, 2\n");
   EXPECT_EQ(run("info a.dump --types 1=O,2=Si").err, "");
+}
+
+TEST_F(CommandLine, APipeIsRefusedAtOnce) {
+  ASSERT_EQ(mkfifo(workspace_.path("pipe").c_str(), 0600), 0);
+  const Outcome outcome = run("info pipe");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.err, StartsWith("motes: error: pipe: "));
 }
 
 TEST_F(CommandLine, InfoPrintsATable) {

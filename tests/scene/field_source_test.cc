@@ -256,6 +256,15 @@ TEST(ColorBySpecies, IsTheDefaultWhereSpeciesAreElements) {
   scene.fields.assign(2, {});
   EXPECT_EQ(colored(scene, silica()), scene.fields);
 
+  // Several names of an element count once.
+  ParticleSet many = silica();
+  many.species_names = {"Si", "O", "O1", "O2", "O3", "O4", "O5", "O6", "O7", "O8"};
+  many.species = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9};
+  EXPECT_EQ(colored({}, many).size(), 1u);
+  many.species_names = {"O1", "O2"};
+  many.species = {0, 1, 0, 1};
+  EXPECT_TRUE(colored({}, many).empty());
+
   // One species, beads that are no elements, and densities keep the colour map.
   ParticleSet particles = silica();
   particles.species = {1, 1, 1, 1};
