@@ -185,11 +185,11 @@ HWY_INLINE Lanes group_max(LaneTag, Lanes v) {
   return v;
 }
 
-/// Indices for TableLookupLanes: lane l takes lane first + l / 4.
-HWY_INLINE auto row_indices(LaneTag d, int first) {
+/// Indices for TableLookupLanes: lane l takes lane l / 4, its row of pixels in the block.
+HWY_INLINE auto row_indices(LaneTag d) {
   alignas(64) std::int32_t indices[max_lanes];
   for (int l = 0; l < num_lanes; ++l) {
-    indices[l] = first + l / sweep_block_width;
+    indices[l] = l / sweep_block_width;
   }
   return hn::SetTableIndices(d, indices);
 }
@@ -298,7 +298,7 @@ HWY_INLINE void add_to_cells(const SweptKernel& kernel, const KernelFactors& fac
                              std::uint64_t bits, SampleBuffer& buffer) {
   const LaneTag d;
   constexpr std::size_t lanes = num_lanes;
-  const auto spread_rows = row_indices(d, 0);
+  const auto spread_rows = row_indices(d);
   const Lanes support_value = hn::Set(d, kernel.support_value), peak = hn::Set(d, kernel.peak);
   const int first_plane = word * (64 / sweep_blocks);
   const float *const columns = factors.column[first_plane], *const rows = factors.row[first_plane];
@@ -313,7 +313,7 @@ HWY_INLINE void add_to_cells(const SweptKernel& kernel, const KernelFactors& fac
                             hn::TableLookupLanes(hn::LoadDup128(d, rows + row), spread_rows));
     const LaneMask inside = hn::Ge(p, support_value);
     float* const values = word_values + cell * cell_stride;
-    if constexpr (!kGradients && !kAbsolute) {
+    if constexpr (!kGradients) {
       const Lanes sum = hn::Load(d, values);
       hn::Store(hn::MulAdd(hn::IfThenElseZero(inside, p), peak, sum), d, values);
     } else {
@@ -336,7 +336,7 @@ HWY_INLINE void add_to_cells(const SweptKernel& kernel, const KernelFactors& fac
   }
 }
 
-/// What a tile's kernels share.
+/// Kernel i of those gathered, but for its planes.
 HWY_INLINE SweptKernel make_swept_kernel(const KernelSet& kernels,
                                          const SamplingConstants& constants,
                                          const GatheredKernels& gathered, std::size_t i,

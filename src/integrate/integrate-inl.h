@@ -144,7 +144,8 @@ HWY_INLINE Lanes power_of(LaneTag d, Lanes x, float power) {
   return hn::IfThenZeroElse(hn::Lt(x, tiny), hn::Exp(d, hn::Max(exponent, hn::Set(d, -86.0f))));
 }
 
-/// 1 / sqrt(x), relative error below 4e-7; 0 for x = 0 and whatever is too small to be told from it.
+/// 1 / sqrt(x), relative error below 4e-7; 0 for x = 0 and whatever is too small to be told from
+/// it.
 HWY_INLINE Lanes inverse_sqrt(LaneTag d, Lanes x) {
   const Lanes guess = hn::ApproximateReciprocalSqrt(x);
   // One step of Newton's method.

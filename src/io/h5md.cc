@@ -341,7 +341,7 @@ std::set<std::int64_t> H5mdTrajectory::read_species(const ParticleGroup& group, 
     file_.fail(group.path + "/species",
                fmt::format("has {} values a frame; expected {}", numbers->size(), group.size()));
   }
-  const std::set<std::int64_t> distinct = distinct_species(group, *numbers);
+  std::set<std::int64_t> distinct = distinct_species(group, *numbers);
   std::map<std::int64_t, std::uint16_t> indices;
   for (const auto& [number, name] : species_names(group, distinct)) {
     indices[number] = particles.species_index(name);
@@ -354,6 +354,7 @@ void H5mdTrajectory::read_all_species(std::uint64_t frame, ParticleSet& particle
   std::set<std::int64_t> numbers;
   for (const ParticleGroup& group : groups_) numbers.merge(read_species(group, frame, particles));
   std::vector<std::string> types;
+  types.reserve(numbers.size());
   for (const std::int64_t number : numbers) types.push_back(std::to_string(number));
   warn_of_absent_types(file_.path(), types, options_);
 }

@@ -1,5 +1,7 @@
 #include "render/ray_packets.h"
 
+#include <algorithm>
+
 namespace motes {
 namespace {
 
@@ -16,14 +18,18 @@ double row_place(const FrameContext& context, int y) {
 RayPacket make_ray_packet(const FrameContext& context, int px, int py, int width, int height) {
   RayPacket packet;
   packet.lanes = width * height;
-  double u[max_lanes], v[max_lanes];
-  for (int x = 0; x < width; ++x) u[x] = column_place(context, px + x);
-  for (int y = 0; y < height; ++y) v[y] = row_place(context, py + y);
-  for (int l = 0; l < packet.lanes; ++l) {
-    packet.origin_x[l] = context.orthographic ? u[l % width] : 0;
-    packet.origin_y[l] = context.orthographic ? v[l / width] : 0;
-    packet.direction_x[l] = context.orthographic ? 0 : u[l % width];
-    packet.direction_y[l] = context.orthographic ? 0 : v[l / width];
+  double* const u = context.orthographic ? packet.origin_x : packet.direction_x;
+  double* const v = context.orthographic ? packet.origin_y : packet.direction_y;
+  double* const no_u = context.orthographic ? packet.direction_x : packet.origin_x;
+  double* const no_v = context.orthographic ? packet.direction_y : packet.origin_y;
+  std::fill_n(no_u, packet.lanes, 0.0);
+  std::fill_n(no_v, packet.lanes, 0.0);
+  for (int y = 0; y < height; ++y) {
+    std::fill_n(v + y * width, width, row_place(context, py + y));
+  }
+  for (int x = 0; x < width; ++x) {
+    const double place = column_place(context, px + x);
+    for (int y = 0; y < height; ++y) u[y * width + x] = place;
   }
   return packet;
 }

@@ -160,8 +160,8 @@ TileCounts render_sweep(const FrameContext& context, const Tile& area, Framebuff
       std::all_of(context.classifiers.begin(), context.classifiers.end(),
                   [](const Classifier& c) { return c.zero_is_transparent; });
   const auto tiles_along = [](int pixels) { return (pixels + sweep_tile - 1) / sweep_tile; };
-  const auto num_tiles =
-      static_cast<std::size_t>(tiles_along(area.width) * tiles_along(area.height));
+  const auto num_tiles = static_cast<std::size_t>(tiles_along(area.width)) *
+                         static_cast<std::size_t>(tiles_along(area.height));
   const auto storage = std::make_unique_for_overwrite<SweepTile[]>(num_tiles);
   const std::span<SweepTile> tiles(storage.get(), num_tiles);
   std::size_t next_tile = 0;
