@@ -1,7 +1,7 @@
 // Frame times on a jittered lattice: the scene of docs/performance.md, "The paper's algorithm".
 //
 //   build/release/bench/bench_lattice [particles an axis, default 45] [engine:
-//   coherent|one-pass|direct] [repeat]
+//   coherent|one-pass|direct|sweep] [repeat]
 //
 // Cubic lattice, spacing 2.475, jittered uniformly by +-0.6; a third with radius 1.11, the rest
 // 0.66; weight 1, sigma 2, step 0.5, 1024 x 1024, field of view 45; extinction 0 at values <= 0.2
