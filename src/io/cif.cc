@@ -39,7 +39,7 @@ namespace cif = gemmi::cif;
   const auto line = cut_number();
   cut_number();
   std::string what = printable(trim(message), 200);
-  if (what.starts_with("Wrong number of values")) {
+  if (what.rfind("Wrong number of values", 0) == 0) {
     what += "; expected whole rows, with a value for each of its tags";
   }
   if (line && *line > 0) throw Error(path, static_cast<std::uint64_t>(*line), what);
