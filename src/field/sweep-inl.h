@@ -32,7 +32,6 @@ namespace HWY_NAMESPACE {
 inline constexpr int sweep_tile = 16;
 /// A block is 4 pixels wide and as high as the lanes allow; blocks of a tile go row by row.
 inline constexpr int sweep_block_width = 4;
-inline constexpr int num_lanes = static_cast<int>(hn::MaxLanes(LaneTag()));
 inline constexpr int sweep_block_height = num_lanes / sweep_block_width;
 inline constexpr int sweep_blocks = sweep_tile * sweep_tile / num_lanes;
 /// Planes of a slab, at most.
@@ -149,12 +148,12 @@ struct KernelFactors {
 /// exp2(scale * distance_sq), or 0 where that is so small that stepping may not start from it.
 HWY_INLINE Lanes seed_factor(LaneTag d, Lanes exponent) {
   constexpr float smallest = -120.0f;
-  return hn::IfThenElseZero(hn::Ge(exponent, hn::Set(d, smallest)), exp2_bounded(d, exponent));
+  return hn::IfThenElseZero(hn::Ge(exponent, hn::Set(d, smallest)), exp2_bounded<6>(d, exponent));
 }
 
 /// exp2 of an exponent that may lie outside of what a float can hold.
 HWY_INLINE Lanes step_factor(LaneTag d, Lanes exponent) {
-  return exp2_bounded(
+  return exp2_bounded<6>(
       d, hn::Min(hn::Max(exponent, hn::Set(d, min_exponent)), hn::Set(d, -min_exponent)));
 }
 
@@ -356,7 +355,7 @@ HWY_INLINE SweptKernel make_swept_kernel(const KernelSet& kernels,
   // A factor below 2^-120, at 12.8 radii, is seeded as 0 and stays 0: so that no sample comes from
   // there into the support, stepping covers no more than the distance between them.
   const float planes = (12.8f - field.support_factor) * radius * inverse_shift;
-  constexpr float most = 7;  // the error of stepping stays below 2e-6
+  constexpr float most = 3;  // more save nothing, and errors grow with the square of the steps
   kernel.planes_per_seed = 1 + static_cast<int>(std::clamp(planes, 0.0f, most));
   kernel.field = static_cast<int>(f);
   return kernel;

@@ -225,6 +225,24 @@ HWY_INLINE std::uint64_t visible_samples(LaneTag d, const std::vector<Classifier
   return visible;
 }
 
+/// Bit i: something was added to sample begin + i. At most 64 samples, begin to end.
+inline std::uint64_t touched_samples(const SampleBuffer& buffer, int block, int begin, int end) {
+  std::uint64_t touched = 0;
+  for (int i = 0; i <= end - begin; ++i) {
+    touched |= std::uint64_t{buffer.touched(buffer.cell(begin + i, block))} << i;
+  }
+  return touched;
+}
+
+/// Zero shows nothing but some value below it does: the many samples that nothing was added to are
+/// then known by their bits only.
+inline bool shows_only_touched(const std::vector<Classifier>& classifiers) {
+  return std::all_of(classifiers.begin(), classifiers.end(),
+                     [](const Classifier& c) { return c.zero_is_transparent; }) &&
+         std::any_of(classifiers.begin(), classifiers.end(),
+                     [](const Classifier& c) { return c.transparent_below < 0; });
+}
+
 /// What a field adds to rays at one sample.
 struct Contribution {
   Lanes opacity;
@@ -391,10 +409,12 @@ HWY_NOINLINE void integrate_block(const std::vector<Classifier>& classifiers,
                   hn::Sub(hn::Load(d, rays.last), slab_first)};
   BlockColors colors{{hn::Load(d, rays.r), hn::Load(d, rays.g), hn::Load(d, rays.b)},
                      hn::Load(d, rays.a)};
+  const bool only_touched = shows_only_touched(classifiers);
   int end = std::min(rays.end - slab.first, slab.count - 1);
   for (int part = std::max(rays.begin - slab.first, 0); part <= end; part += 64) {
-    const std::uint64_t visible =
-        visible_samples(d, classifiers, part, std::min(part + 63, end), samples);
+    const int part_end = std::min(part + 63, end);
+    std::uint64_t visible = visible_samples(d, classifiers, part, part_end, samples);
+    if (only_touched) visible &= touched_samples(buffer, block, part, part_end);
     if (classifiers.size() != 1) {
       add_fields<kGradients>(d, shading, samples, part, visible, state, colors);
     } else if (kind_of(classifiers[0]) == TableKind::one_segment) {

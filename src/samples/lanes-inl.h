@@ -26,6 +26,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using LaneTag = hn::CappedTag<float, max_lanes>;
 using Lanes = hn::Vec<LaneTag>;
 using LaneMask = hn::Mask<LaneTag>;
+inline constexpr int num_lanes = static_cast<int>(hn::MaxLanes(LaneTag()));
 
 /// Bit l is lane l of the mask.
 template <class D>

@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <algorithm>
 #include <set>
+
+#include "samples/lanes-inl.h"
 
 namespace motes {
 namespace {
@@ -46,6 +49,23 @@ RC_GTEST_PROP(SampleBuffer, RemembersWhatWasTouched, ()) {
     first_cell += 64;
   }
   RC_ASSERT(touched.empty());
+}
+
+/// Several blocks and channels: a cell is more than one vector.
+RC_GTEST_PROP(SampleBuffer, IsZeroAfterClearing, ()) {
+  const int channels = *rc::gen::element(1, 2, 5), samples = *rc::gen::inRange(1, 40);
+  const SampleLayout layout{.num_fields = channels, .lanes = HWY_NAMESPACE::num_lanes};
+  SampleBuffer buffer(layout, samples, 16);
+  const auto cells = *rc::gen::container<std::set<int>>(rc::gen::inRange(0, 16 * samples));
+  for (const int cell : cells) {
+    buffer.touch(cell, cell);
+    std::fill_n(buffer.at(cell, 0), layout.floats_per_sample(), 1.0F);
+  }
+  HWY_NAMESPACE::clear_touched(buffer);
+  const float* const values = buffer.at(0, 0);
+  const auto size = layout.floats_per_sample() * 16 * static_cast<std::size_t>(samples);
+  RC_ASSERT(std::all_of(values, values + size, [](float v) { return v == 0; }));
+  RC_ASSERT(buffer.touched_blocks() == 0u);
 }
 
 TEST(SampleBuffer, TellsWhichBlocksWereTouched) {
