@@ -56,10 +56,12 @@ struct TablePlace {
 /// How a table is read: a single segment is a broadcast, a row of one vector a permutation.
 enum class TableKind { one_segment, one_vector, many };
 
-HWY_INLINE TableKind kind_of(const Classifier& c) {
-  if (c.num_segments == 1) return TableKind::one_segment;
-  const bool one_vector = static_cast<std::size_t>(c.num_segments) <= hn::Lanes(LaneTag());
-  return one_vector ? TableKind::one_vector : TableKind::many;
+/// The simplest that does for all of them.
+HWY_INLINE TableKind kind_of(const std::vector<Classifier>& classifiers) {
+  int most = 1;
+  for (const Classifier& c : classifiers) most = std::max(most, c.num_segments);
+  if (most == 1) return TableKind::one_segment;
+  return most <= num_lanes ? TableKind::one_vector : TableKind::many;
 }
 
 /// A row of the table. Known to the compiler where a row is one vector.
@@ -200,47 +202,62 @@ HWY_INLINE Light light_field(LaneTag d, const ShadingConstants& shading, const S
           hn::Mul(hn::Set(d, shading.specular), power_of(d, n_h, shading.shininess))};
 }
 
-/// The samples of one block in a buffer.
-struct BlockSamples {
-  const float* first;     ///< sample 0, field 0, channel 0
-  std::ptrdiff_t stride;  ///< floats from a sample to the next
-  std::ptrdiff_t field_stride;
+/// The samples of a slab: [sample][field][channel][lane].
+struct SlabSamples {
+  const float* first;  ///< sample 0, field 0, channel 0
+  std::size_t stride, field_stride;
   const float* at(int sample, std::size_t field) const {
-    return first + sample * stride + static_cast<std::ptrdiff_t>(field) * field_stride;
+    return first + static_cast<std::size_t>(sample) * stride + field * field_stride;
   }
 };
 
-/// Bit i: some ray may see sample begin + i. At most 64 samples, begin to end.
-HWY_INLINE std::uint64_t visible_samples(LaneTag d, const std::vector<Classifier>& classifiers,
-                                         int begin, int end, const BlockSamples& samples) {
-  std::uint64_t visible = 0;
-  for (std::size_t f = 0; f < classifiers.size(); ++f) {
-    const Lanes clear = hn::Set(d, classifiers[f].transparent_below);
+/// Bit i: some ray may see field `f` at sample begin + i. At most 64 samples, begin to end.
+HWY_INLINE std::uint64_t visible_samples(LaneTag d, const Classifier& classifier, std::size_t f,
+                                         int begin, int end, const SlabSamples& samples) {
+  const Lanes clear = hn::Set(d, classifier.transparent_below);
+  const auto look = [&](auto&& is_seen) HWY_ATTR {
     const float* values = samples.at(begin, f);
+    std::uint64_t visible = 0;
     for (int i = 0; i <= end - begin; ++i, values += samples.stride) {
-      const bool any = !hn::AllFalse(d, hn::Gt(hn::Load(d, values), clear));
+      const bool any = !hn::AllFalse(d, is_seen(hn::Load(d, values)));
       visible |= static_cast<std::uint64_t>(any) << i;
     }
+    return visible;
+  };
+  // Only where some negative value shows, empty samples, many as they are, need a test of their
+  // own.
+  if (classifier.zero_is_transparent && classifier.transparent_below < 0) {
+    return look([&](Lanes value)
+                    HWY_ATTR { return hn::And(hn::Gt(value, clear), hn::Ne(value, hn::Zero(d))); });
   }
-  return visible;
+  return look([&](Lanes value) HWY_ATTR { return hn::Gt(value, clear); });
 }
 
-/// Bit i: something was added to sample begin + i. At most 64 samples, begin to end.
-inline std::uint64_t touched_samples(const SampleBuffer& buffer, int block, int begin, int end) {
-  std::uint64_t touched = 0;
-  for (int i = 0; i <= end - begin; ++i) {
-    touched |= std::uint64_t{buffer.touched(buffer.cell(begin + i, block))} << i;
-  }
-  return touched;
-}
+/// A field at a sample that some ray may see.
+struct VisibleSample {
+  std::uint16_t sample;  ///< of the slab
+  std::uint16_t field;
+};
 
-/// Zero shows nothing but some value below it does: the many samples that nothing was added to are
-/// then known by their bits only.
-inline bool shows_only_touched(const std::vector<Classifier>& classifiers) {
-  return std::all_of(classifiers.begin(), classifiers.end(),
-                     [](const Classifier& c) { return c.zero_is_transparent; }) &&
-         std::any_of(classifiers.begin(), classifiers.end(),
-                     [](const Classifier& c) { return c.transparent_below < 0; });
+/// Those of at most 64 samples, begin to end, in the order of compositing. Returns how many; `out`
+/// has room for one more than all.
+HWY_INLINE std::size_t list_visible(LaneTag d, const std::vector<Classifier>& classifiers,
+                                    int begin, int end, const SlabSamples& samples,
+                                    VisibleSample* out) {
+  std::uint64_t visible[max_fields], any = 0;
+  for (std::size_t f = 0; f < classifiers.size(); ++f) {
+    visible[f] = visible_samples(d, classifiers[f], f, begin, end, samples);
+    any |= visible[f];
+  }
+  std::size_t count = 0;
+  for (; any != 0; any &= any - 1) {
+    const int i = std::countr_zero(any);
+    for (std::size_t f = 0; f < classifiers.size(); ++f) {
+      out[count] = {static_cast<std::uint16_t>(begin + i), static_cast<std::uint16_t>(f)};
+      count += visible[f] >> i & 1;
+    }
+  }
+  return count;
 }
 
 /// What a field adds to rays at one sample.
@@ -309,94 +326,64 @@ struct BlockShading {
   }
 };
 
-/// Adds the samples whose bits are set (bit i: sample `begin` + i) of the only field. Each is a
-/// long chain of operations: two side by side keep the processor busy.
+/// Adds `count` samples. Each is a long chain of operations: two side by side keep the processor
+/// busy.
 template <bool kGradients, TableKind kKind>
-HWY_INLINE void add_samples(LaneTag d, const BlockShading& shading, const BlockSamples& samples,
-                            int begin, std::uint64_t visible, BlockRays& rays,
+HWY_INLINE void add_samples(LaneTag d, const BlockShading& shading, const SlabSamples& samples,
+                            const VisibleSample* visible, std::size_t count, BlockRays& rays,
                             BlockColors& colors) {
   constexpr float no_sample = std::numeric_limits<float>::max();
   const Lanes termination = hn::Set(d, shading.constants.termination_opacity);
-  while (visible != 0) {
-    const int k = begin + std::countr_zero(visible);
-    visible &= visible - 1;
-    const int next = visible != 0 ? begin + std::countr_zero(visible) : k;
-    visible &= visible - 1;
-    const Lanes index = hn::Set(d, static_cast<float>(k));
-    const Lanes next_index = hn::Set(d, next != k ? static_cast<float>(next) : no_sample);
-    const LaneMask live = rays.live_at(index), next_live = rays.live_at(next_index);
+  // After all fields of a sample rays that are opaque enough end.
+  const auto is_last_field = [&](std::size_t i) {
+    return i + 1 == count || visible[i + 1].sample != visible[i].sample;
+  };
+  for (std::size_t i = 0; i < count; i += 2) {
+    const bool is_pair = i + 1 < count;
+    const VisibleSample one = visible[i], other = visible[is_pair ? i + 1 : i];
+    const Lanes index = hn::Set(d, static_cast<float>(one.sample));
+    const Lanes other_index = hn::Set(d, is_pair ? static_cast<float>(other.sample) : no_sample);
+    const LaneMask live = rays.live_at(index), other_live = rays.live_at(other_index);
     Contribution a, b;
-    shading.classify_as<kGradients, kKind>(d, 0, samples.at(k, 0), a);
-    shading.classify_as<kGradients, kKind>(d, 0, samples.at(next, 0), b);
+    shading.classify_as<kGradients, kKind>(d, one.field, samples.at(one.sample, one.field), a);
+    shading.classify_as<kGradients, kKind>(d, other.field, samples.at(other.sample, other.field),
+                                           b);
     colors.composite(d, hn::IfThenElseZero(live, a.opacity), a.color);
     BlockColors both = colors;
-    both.composite(d, hn::IfThenElseZero(next_live, b.opacity), b.color);
-    // Rays that are opaque enough end: seldom, so only then it is asked at which of the two
-    // samples.
+    both.composite(d, hn::IfThenElseZero(other_live, b.opacity), b.color);
+    // Rays end seldom, so only if one may it is asked at which of the two samples.
     const LaneMask opaque = hn::Gt(both.alpha, termination);
-    if (HWY_UNLIKELY(!hn::AllFalse(d, hn::And(hn::Or(live, next_live), opaque)))) {
-      const LaneMask ends = hn::And(live, hn::Gt(colors.alpha, termination));
-      const LaneMask goes_on = hn::AndNot(ends, next_live);
+    if (HWY_UNLIKELY(!hn::AllFalse(d, hn::And(hn::Or(live, other_live), opaque)))) {
+      LaneMask goes_on = other_live;
+      if (is_last_field(i)) {
+        const LaneMask ends = hn::And(live, hn::Gt(colors.alpha, termination));
+        rays.end_at(ends, index);
+        goes_on = hn::AndNot(ends, other_live);
+      }
       both = colors;
       both.composite(d, hn::IfThenElseZero(goes_on, b.opacity), b.color);
-      rays.end_at(ends, index);
-      rays.end_at(hn::And(goes_on, hn::Gt(both.alpha, termination)), next_index);
-      colors = both;
-      if (hn::AllFalse(d, hn::Gt(rays.last, next != k ? next_index : index))) return;
+      if (is_pair && is_last_field(i + 1)) {
+        rays.end_at(hn::And(goes_on, hn::Gt(both.alpha, termination)), other_index);
+      }
     }
     colors = both;
-  }
-}
-
-/// The same with several fields, at each sample in their order.
-template <bool kGradients>
-HWY_INLINE void add_fields(LaneTag d, const BlockShading& shading, const BlockSamples& samples,
-                           int begin, std::uint64_t visible, BlockRays& rays, BlockColors& colors) {
-  const Lanes termination = hn::Set(d, shading.constants.termination_opacity);
-  for (; visible != 0; visible &= visible - 1) {
-    const int k = begin + std::countr_zero(visible);
-    const Lanes index = hn::Set(d, static_cast<float>(k));
-    const LaneMask live = rays.live_at(index);
-    for (std::size_t f = 0; f < shading.classifiers.size(); ++f) {
-      const float* const channels = samples.at(k, f);
-      const Classifier& c = shading.classifiers[f];
-      const LaneMask seen =
-          hn::And(live, hn::Gt(hn::Load(d, channels), hn::Set(d, c.transparent_below)));
-      if (hn::AllFalse(d, seen)) continue;
-      Contribution a;
-      switch (kind_of(c)) {
-        case TableKind::one_segment:
-          shading.classify_as<kGradients, TableKind::one_segment>(d, f, channels, a);
-          break;
-        case TableKind::one_vector:
-          shading.classify_as<kGradients, TableKind::one_vector>(d, f, channels, a);
-          break;
-        case TableKind::many:
-          shading.classify_as<kGradients, TableKind::many>(d, f, channels, a);
-      }
-      colors.composite(d, hn::IfThenElseZero(live, a.opacity), a.color);
-    }
-    // After all fields of a sample: rays that are opaque enough end here.
-    const LaneMask ends = hn::And(live, hn::Gt(colors.alpha, termination));
-    if (HWY_UNLIKELY(!hn::AllFalse(d, ends))) {
-      rays.end_at(ends, index);
-      if (hn::AllFalse(d, hn::Gt(rays.last, index))) return;
+    if (HWY_UNLIKELY(rays.any_ended) && i + 2 < count) {
+      const Lanes next = hn::Set(d, static_cast<float>(visible[i + 2].sample));
+      if (hn::AllFalse(d, hn::Ge(rays.last, next))) return;
     }
   }
 }
 
-/// Composites the samples of `slab` in block `block` of the buffer into the rays' colours. A ray
-/// that reaches the termination opacity ends. Hot: nothing is checked.
+/// Composites the samples of `slab` (field 0, channel 0 of its first at `first_sample`) into the
+/// rays' colours. A ray that reaches the termination opacity ends. Hot: nothing is checked.
 template <bool kGradients>
-HWY_NOINLINE void integrate_block(const std::vector<Classifier>& classifiers,
-                                  const ShadingConstants& constants, const Slab& slab,
-                                  SampleBuffer& buffer, int block, RayState& rays) {
+HWY_NOINLINE void integrate_slab(const std::vector<Classifier>& classifiers,
+                                 const ShadingConstants& constants, const Slab& slab,
+                                 const SampleLayout& layout, const float* first_sample,
+                                 RayState& rays) {
   const LaneTag d;
-  const SampleLayout& layout = buffer.layout();
-  const BlockSamples samples{
-      buffer.at(block, 0),
-      static_cast<std::ptrdiff_t>(layout.floats_per_sample()) * buffer.num_blocks(),
-      static_cast<std::ptrdiff_t>(layout.channels() * layout.lanes)};
+  const SlabSamples samples{first_sample, layout.floats_per_sample(),
+                            static_cast<std::size_t>(layout.channels() * layout.lanes)};
   const Lanes slab_first = hn::Set(d, static_cast<float>(slab.first));
   const Lanes length = hn::Load(d, rays.length);
   BlockShading shading{classifiers, constants, layout, length, {length, length, length}};
@@ -409,22 +396,20 @@ HWY_NOINLINE void integrate_block(const std::vector<Classifier>& classifiers,
                   hn::Sub(hn::Load(d, rays.last), slab_first)};
   BlockColors colors{{hn::Load(d, rays.r), hn::Load(d, rays.g), hn::Load(d, rays.b)},
                      hn::Load(d, rays.a)};
-  const bool only_touched = shows_only_touched(classifiers);
+  VisibleSample visible[64 * max_fields + 1];
+  const TableKind kind = kind_of(classifiers);
   int end = std::min(rays.end - slab.first, slab.count - 1);
   for (int part = std::max(rays.begin - slab.first, 0); part <= end; part += 64) {
-    const int part_end = std::min(part + 63, end);
-    std::uint64_t visible = visible_samples(d, classifiers, part, part_end, samples);
-    if (only_touched) visible &= touched_samples(buffer, block, part, part_end);
-    if (classifiers.size() != 1) {
-      add_fields<kGradients>(d, shading, samples, part, visible, state, colors);
-    } else if (kind_of(classifiers[0]) == TableKind::one_segment) {
-      add_samples<kGradients, TableKind::one_segment>(d, shading, samples, part, visible, state,
+    const std::size_t count =
+        list_visible(d, classifiers, part, std::min(part + 63, end), samples, visible);
+    if (kind == TableKind::one_segment) {
+      add_samples<kGradients, TableKind::one_segment>(d, shading, samples, visible, count, state,
                                                       colors);
-    } else if (kind_of(classifiers[0]) == TableKind::one_vector) {
-      add_samples<kGradients, TableKind::one_vector>(d, shading, samples, part, visible, state,
+    } else if (kind == TableKind::one_vector) {
+      add_samples<kGradients, TableKind::one_vector>(d, shading, samples, visible, count, state,
                                                      colors);
     } else {
-      add_samples<kGradients, TableKind::many>(d, shading, samples, part, visible, state, colors);
+      add_samples<kGradients, TableKind::many>(d, shading, samples, visible, count, state, colors);
     }
     if (state.any_ended) {
       const int last_live = static_cast<int>(hn::GetLane(hn::MaxOfLanes(d, state.last)));
@@ -440,11 +425,12 @@ HWY_NOINLINE void integrate_block(const std::vector<Classifier>& classifiers,
 }
 
 inline void integrate(const std::vector<Classifier>& classifiers, const ShadingConstants& shading,
-                      const Slab& slab, SampleBuffer& buffer, int block, RayState& rays) {
-  if (buffer.layout().gradients) {
-    integrate_block<true>(classifiers, shading, slab, buffer, block, rays);
+                      const Slab& slab, const SampleLayout& layout, const float* first_sample,
+                      RayState& rays) {
+  if (layout.gradients) {
+    integrate_slab<true>(classifiers, shading, slab, layout, first_sample, rays);
   } else {
-    integrate_block<false>(classifiers, shading, slab, buffer, block, rays);
+    integrate_slab<false>(classifiers, shading, slab, layout, first_sample, rays);
   }
 }
 

@@ -4,6 +4,7 @@
 #include <bit>
 #include <climits>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -74,7 +75,7 @@ std::uint64_t render_packet(const FrameContext& context, const SamplingConstants
     const Slab slab{k, std::min(rays.end - k + 1, context.samples_per_pass)};
     buffer.reserve(slab.count);
     evaluations += sample_field(context, constants, packet, slab, buffer);
-    integrate(context.classifiers, context.shading, slab, buffer, 0, rays);
+    integrate(context.classifiers, context.shading, slab, buffer.layout(), buffer.at(0, 0), rays);
     clear_touched(buffer);
   }
   return evaluations;
@@ -121,7 +122,8 @@ void start_tile(const FrameContext& context, int x, int y, SweepTile& tile) {
   tile.bounds = make_ray_bounds(context, x, y, sweep_tile, sweep_tile);
   for (int b = 0; b < sweep_blocks; ++b) {
     RayState& rays = tile.blocks[b];
-    start_rays(context, x + b % 4 * 4, y + b / 4 * sweep_block_height, sweep_block_width,
+    start_rays(context, x + b % sweep_blocks_across * sweep_block_width,
+               y + b / sweep_blocks_across * sweep_block_height, sweep_block_width,
                sweep_block_height, rays);
     tile.begin[b] = rays.begin;
     tile.end[b] = rays.end;
@@ -138,27 +140,75 @@ std::uint64_t live_blocks(const SweepTile& tile, const Slab& slab) {
   return live;
 }
 
-/// Pass 1 of the sweep for one tile, with the channels of the frame.
+/// Samples that no kernel reaches show nothing.
+bool zero_is_transparent(const FrameContext& context) {
+  return std::all_of(context.classifiers.begin(), context.classifiers.end(),
+                     [](const Classifier& c) { return c.zero_is_transparent; });
+}
+
+/// What the sweep of an area works with: a few MB, kept by each thread.
+struct SweepMemory {
+  GatheredKernels gathered;
+  TileKernels tile_kernels;
+  FactorLists lists;
+  AlignedVector<float> samples;  ///< of the blocks of a tile, one after the other
+  /// Values of each field up to which nothing is seen; and where nothing is ruled out.
+  float visible_above[max_fields], everything[max_fields];
+};
+
+/// Pass 1 of the sweep for a tile in a slab, with the channels of the frame. Blocks that show
+/// nothing, whose samples are not set, lose their bits in `live`. Returns kernel evaluations.
+template <bool kGradients, bool kAbsolute>
 std::uint64_t sample_tile(const FrameContext& context, const SamplingConstants& constants,
-                          const GatheredKernels& gathered, const SlabFrame& frame,
-                          const SweepTile& tile, std::uint64_t live, SampleBuffer& buffer) {
-  const auto sample = [&]<bool kGradients, bool kAbsolute>() {
-    return sample_sweep<kGradients, kAbsolute>(*context.kernels, constants, context.view, gathered,
-                                               frame, tile.bounds, live, buffer);
-  };
-  if (context.gradients) {
-    return context.absolute ? sample.template operator()<true, true>()
-                            : sample.template operator()<true, false>();
+                          const TileSamples& placed, const Slab& slab, std::uint64_t& live,
+                          SweepMemory& memory) {
+  const SampleLayout layout = make_layout(context);
+  const std::size_t block_stride =
+      static_cast<std::size_t>(slab.count) * layout.floats_per_sample();
+  memory.samples.resize(sweep_blocks * block_stride);
+  std::uint64_t evaluations = 0;
+  std::size_t listed = 0;
+  do {
+    const bool first = listed == 0;
+    listed =
+        list_factors<kGradients>(*context.kernels, constants, memory.gathered, memory.tile_kernels,
+                                 placed, slab.count, listed, memory.lists);
+    // Only where all kernels are there at once it is known what may be seen.
+    const bool only = first && listed == memory.tile_kernels.size;
+    if (only && zero_is_transparent(context)) live &= blocks_of(memory.lists.any_rows);
+    const SweepRound round{memory.lists, placed, only ? memory.visible_above : memory.everything,
+                           first};
+    evaluations += sum_planes<kGradients, kAbsolute>(round, layout, strips_of(live), slab.count,
+                                                     block_stride, memory.samples.data());
+  } while (listed != memory.tile_kernels.size);
+  return evaluations;
+}
+
+/// Samples and integrates a tile in a slab. Returns kernel evaluations.
+std::uint64_t sweep_slab(const FrameContext& context, const SamplingConstants& constants,
+                         const SlabFrame& frame, const Slab& slab, SweepMemory& memory,
+                         SweepTile& tile) {
+  const TileSamples placed = place_samples(tile.bounds, frame);
+  std::uint64_t live = live_blocks(tile, slab);
+  const auto sample = !context.gradients ? &sample_tile<false, false>
+                      : context.absolute ? &sample_tile<true, true>
+                                         : &sample_tile<true, false>;
+  const std::uint64_t evaluations = sample(context, constants, placed, slab, live, memory);
+  const SampleLayout layout = make_layout(context);
+  const std::size_t block_stride =
+      static_cast<std::size_t>(slab.count) * layout.floats_per_sample();
+  for (; live != 0; live &= live - 1) {
+    const auto b = static_cast<std::size_t>(std::countr_zero(live));
+    integrate(context.classifiers, context.shading, slab, layout,
+              memory.samples.data() + b * block_stride, tile.blocks[b]);
+    tile.end[b] = tile.blocks[b].end;
   }
-  return sample.template operator()<false, false>();
+  return evaluations;
 }
 
 /// Slab by slab: one traversal for all tiles, then tile by tile sampling and integrating.
 TileCounts render_sweep(const FrameContext& context, const Tile& area, Framebuffer& image) {
   const SamplingConstants constants = make_constants(*context.kernels);
-  const bool zero_is_transparent =
-      std::all_of(context.classifiers.begin(), context.classifiers.end(),
-                  [](const Classifier& c) { return c.zero_is_transparent; });
   const auto tiles_along = [](int pixels) { return (pixels + sweep_tile - 1) / sweep_tile; };
   const auto num_tiles = static_cast<std::size_t>(tiles_along(area.width)) *
                          static_cast<std::size_t>(tiles_along(area.height));
@@ -178,28 +228,25 @@ TileCounts render_sweep(const FrameContext& context, const Tile& area, Framebuff
       make_ray_bounds(context, area.x, area.y, tiles_along(area.width) * sweep_tile,
                       tiles_along(area.height) * sweep_tile);
   const int planes = std::min(context.samples_per_pass, max_sweep_planes);
-  SampleBuffer buffer(make_layout(context), planes, sweep_blocks);
-  GatheredKernels gathered;
+  static thread_local SweepMemory memory;
+  std::fill_n(memory.everything, max_fields, -std::numeric_limits<float>::infinity());
+  std::transform(context.classifiers.begin(), context.classifiers.end(), memory.visible_above,
+                 [](const Classifier& c) { return c.transparent_below; });
   TileCounts counts;
   while (begin <= end) {
     const Slab slab{begin, std::min(end - begin + 1, planes)};
     const SlabFrame frame = make_slab_frame(bounds, slab, context.view);
     gather_kernels(*context.kernels, constants, frame, make_frustum(bounds, frame, context.view),
-                   gathered);
+                   memory.gathered);
     end = -1;
     for (SweepTile& tile : tiles) {
-      std::uint64_t live = live_blocks(tile, slab);
-      if (live != 0 && gathered.size != 0) {
-        counts.kernel_evaluations +=
-            sample_tile(context, constants, gathered, frame, tile, live, buffer);
+      if (live_blocks(tile, slab) != 0) {
+        find_tile_kernels(constants, memory.gathered, frame,
+                          make_frustum(tile.bounds, frame, context.view), memory.tile_kernels);
+        if (memory.tile_kernels.size != 0 || !zero_is_transparent(context)) {
+          counts.kernel_evaluations += sweep_slab(context, constants, frame, slab, memory, tile);
+        }
       }
-      if (zero_is_transparent) live &= buffer.touched_blocks();
-      for (; live != 0; live &= live - 1) {
-        const int b = std::countr_zero(live);
-        integrate(context.classifiers, context.shading, slab, buffer, b, tile.blocks[b]);
-        tile.end[b] = tile.blocks[b].end;
-      }
-      clear_touched(buffer);
       end = std::max(end, *std::max_element(tile.end, tile.end + sweep_blocks));
     }
     begin += slab.count;
@@ -207,8 +254,8 @@ TileCounts render_sweep(const FrameContext& context, const Tile& area, Framebuff
   for (const SweepTile& tile : tiles) {
     for (int b = 0; b < sweep_blocks; ++b) {
       counts.samples += count_samples(tile.blocks[b]);
-      store_pixels(tile.blocks[b], tile.x + b % 4 * 4, tile.y + b / 4 * sweep_block_height,
-                   sweep_block_width, image);
+      store_pixels(tile.blocks[b], tile.x + b % sweep_blocks_across * sweep_block_width,
+                   tile.y + b / sweep_blocks_across * sweep_block_height, sweep_block_width, image);
     }
   }
   return counts;

@@ -40,17 +40,17 @@ HWY_INLINE unsigned mask_bits(D d, hn::Mask<D> mask) {
 inline void clear_touched(SampleBuffer& buffer) {
   const LaneTag d;
   const std::size_t floats = buffer.layout().floats_per_sample();
-  int first_cell = 0;
+  int first_sample = 0;
   for (std::uint64_t& word : buffer.touched_words()) {
-    float* const values = buffer.at(first_cell, 0);
+    float* const values = buffer.at(first_sample, 0);
     for (std::uint64_t bits = word; bits != 0; bits &= bits - 1) {
-      float* const cell = values + static_cast<std::size_t>(std::countr_zero(bits)) * floats;
-      hn::Store(hn::Zero(d), d, cell);
+      float* const sample = values + static_cast<std::size_t>(std::countr_zero(bits)) * floats;
+      hn::Store(hn::Zero(d), d, sample);
       // Most buffers have but one channel; only for more is filling worth a call.
-      if (floats > hn::Lanes(d)) std::fill_n(cell, floats, 0.0f);
+      if (floats > hn::Lanes(d)) std::fill_n(sample, floats, 0.0f);
     }
     word = 0;
-    first_cell += 64;
+    first_sample += 64;
   }
 }
 

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <algorithm>
-#include <bit>
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
@@ -71,66 +70,42 @@ struct SampleLayout {
   }
 };
 
-/// The samples of a slab for one packet, or for several side by side (the blocks of a tile):
-/// [sample][block][field][channel][lane], all zero but where a particle was added. A sample of a
-/// block is a cell; `touched` has a bit for each to which something was added, so that clearing and
-/// integrating pass over empty ones.
+/// Samples of a packet, one after the other: [sample][field][channel][lane].
 class SampleBuffer {
  public:
-  SampleBuffer(const SampleLayout& layout, int num_samples, int num_blocks = 1)
+  SampleBuffer(const SampleLayout& layout, int num_samples)
       : layout_(layout),
-        num_blocks_(num_blocks),
-        values_(layout.floats_per_sample() * static_cast<std::size_t>(num_samples * num_blocks),
-                0.0f),
-        touched_((static_cast<std::size_t>(num_samples * num_blocks) + 63) / 64, 0) {}
+        values_(layout.floats_per_sample() * static_cast<std::size_t>(num_samples), 0.0f),
+        touched_((static_cast<std::size_t>(num_samples) + 63) / 64, 0) {}
 
   const SampleLayout& layout() const { return layout_; }
-  int num_blocks() const { return num_blocks_; }
-  int capacity() const {
-    return static_cast<int>(values_.size() / layout_.floats_per_sample()) / num_blocks_;
-  }
-  int cell(int sample, int block) const { return sample * num_blocks_ + block; }
+  int capacity() const { return static_cast<int>(values_.size() / layout_.floats_per_sample()); }
 
   /// Grows the buffer to `num_samples`; what it held is cleared.
   void reserve(int num_samples) {
-    if (num_samples > capacity()) *this = SampleBuffer(layout_, num_samples, num_blocks_);
+    if (num_samples > capacity()) *this = SampleBuffer(layout_, num_samples);
   }
 
   /// First lane of channel 0. Hot: unchecked.
-  float* at(int cell, int field) {
-    return values_.data() + static_cast<std::size_t>(cell) * layout_.floats_per_sample() +
+  float* at(int sample, int field) {
+    return values_.data() + static_cast<std::size_t>(sample) * layout_.floats_per_sample() +
            static_cast<std::size_t>(field) * static_cast<std::size_t>(layout_.channels()) *
                static_cast<std::size_t>(layout_.lanes);
   }
 
-  /// Marks cells first to last, both included. Hot: unchecked.
+  /// Marks samples first to last, both included, to be cleared. Hot: unchecked.
   void touch(int first, int last) {
     for (int word = first / 64; word <= last / 64; ++word) {
       const int low = std::max(first - 64 * word, 0), high = std::min(last - 64 * word, 63);
-      touch_word(word, (~std::uint64_t{0} >> (63 - (high - low))) << low);
+      touched_[static_cast<std::size_t>(word)] |= (~std::uint64_t{0} >> (63 - (high - low))) << low;
     }
   }
-  /// Marks cells 64 word + i for each bit i.
-  void touch_word(int word, std::uint64_t bits) {
-    touched_[static_cast<std::size_t>(word)] |= bits;
-  }
-  bool touched(int cell) const {
-    return (touched_[static_cast<std::size_t>(cell) / 64] >> (cell % 64) & 1) != 0;
-  }
-  /// Bit b: something was added to a sample of block b. The number of blocks divides 64.
-  std::uint64_t touched_blocks() const {
-    std::uint64_t any = 0;
-    for (const std::uint64_t word : touched_) any |= word;
-    for (int shift = 32; shift >= num_blocks_; shift /= 2) any |= any >> shift;
-    return num_blocks_ == 64 ? any : any & ((std::uint64_t{1} << num_blocks_) - 1);
-  }
 
-  /// A bit for each cell: 64 word + i.
+  /// A bit for each sample: 64 word + i.
   std::span<std::uint64_t> touched_words() { return touched_; }
 
  private:
   SampleLayout layout_;
-  int num_blocks_ = 1;
   AlignedVector<float> values_;
   AlignedVector<std::uint64_t> touched_;
 };

@@ -214,6 +214,24 @@ TEST(Engines, OneStepAcrossEverything) {
   check(s, "no plane");
 }
 
+TEST(Engines, MoreKernelsInATileThanOneRoundTakes) {
+  // Each of 4,000 kernels reaches all pixels and planes: tens of thousands of entries.
+  std::vector<Point3d> centers;
+  centers.reserve(4000);
+  for (int i = 0; i < 4000; ++i) {
+    centers.push_back({0.05 * (i % 7), 0.07 * (i % 11), 0.03 * (i % 13)});
+  }
+  PlainScene s = plain_scene(centers, 12);
+  std::vector<float> weights(centers.size(), 2e-3F);
+  for (std::size_t i = 0; i < weights.size(); i += 3) weights[i] = -1e-3F;
+  s.scene.fields[0].weight = weights;
+  s.scene.transfer_functions = {ramp(4, 1)};
+  s.scene.render.lighting.enabled = true;
+  s.scene.render.width = 9;
+  s.scene.render.height = 7;
+  check(s, "crowd");
+}
+
 TEST(Engines, MoreFieldsThanOnePassHolds) {
   PlainScene s = plain_scene({{0, 0, 0}, {1, 1, 0}, {-1, 1, 1}}, 10);
   const FieldSource first = s.scene.fields[0];
