@@ -1,13 +1,21 @@
-// Storage that loads straight into vectors: 64-byte aligned.
+// Storage that loads straight into vectors: 64-byte aligned, and large arrays in large pages.
 #pragma once
 
 #include <cstddef>
 #include <new>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace motes {
 
 inline constexpr std::size_t cache_line_bytes = 64;
+
+/// Memory aligned to a cache line; from a few MiB on to the large pages of the machine, which the
+/// kernel is asked for: random access to gigabytes then misses the cache only, not the page table
+/// too. Throws std::bad_alloc.
+void* allocate_aligned(std::size_t bytes);
+void deallocate_aligned(void* p, std::size_t bytes);
 
 template <class T>
 struct AlignedAllocator {
@@ -19,10 +27,8 @@ struct AlignedAllocator {
   struct rebind {
     using other = AlignedAllocator<U>;
   };
-  T* allocate(std::size_t n) {
-    return static_cast<T*>(::operator new (n * sizeof(T), std::align_val_t{cache_line_bytes}));
-  }
-  void deallocate(T* p, std::size_t) { ::operator delete (p, std::align_val_t{cache_line_bytes}); }
+  T* allocate(std::size_t n) { return static_cast<T*>(allocate_aligned(n * sizeof(T))); }
+  void deallocate(T* p, std::size_t n) { deallocate_aligned(p, n * sizeof(T)); }
   template <class U>
   bool operator==(const AlignedAllocator<U>&) const {
     return true;
@@ -31,5 +37,31 @@ struct AlignedAllocator {
 
 template <class T>
 using AlignedVector = std::vector<T, AlignedAllocator<T>>;
+
+/// Leaves new elements as they are: for arrays that threads fill together, each touching its own
+/// part first.
+template <class T>
+struct UninitializedAllocator : AlignedAllocator<T> {
+  static_assert(std::is_trivially_copyable_v<T>);
+  UninitializedAllocator() = default;
+  template <class U>
+  explicit UninitializedAllocator(const UninitializedAllocator<U>&) {}
+  template <class U>
+  struct rebind {
+    using other = UninitializedAllocator<U>;
+  };
+  template <class U, class... Args>
+  void construct(U* p, Args&&... args) {
+    if constexpr (sizeof...(Args) == 0) {
+      ::new (static_cast<void*>(p)) U;
+    } else {
+      ::new (static_cast<void*>(p)) U(std::forward<Args>(args)...);
+    }
+  }
+};
+
+/// An array whose size is set first and whose elements are all written afterwards.
+template <class T>
+using UninitializedVector = std::vector<T, UninitializedAllocator<T>>;
 
 }  // namespace motes

@@ -39,8 +39,8 @@ struct FieldKernels {
 struct KernelSet {
   Point3d origin;  ///< of positions; file's lengths, world axes
   double length_scale = 1;
-  AlignedVector<float> x, y, z, radius, weight;
-  AlignedVector<std::uint8_t>
+  UninitializedVector<float> x, y, z, radius, weight;
+  UninitializedVector<std::uint8_t>
       field;  ///< index of each kernel's field; empty if there is only one field
   std::vector<FieldKernels> fields;
   Bounds3d centers;  ///< of all kernels; file's lengths, world axes

@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
 #include <algorithm>
 #include <numeric>
 #include <random>
@@ -18,7 +21,13 @@ struct Cloud {
     z.push_back(pz);
     radius.push_back(r);
   }
-  Cloud reordered(const std::vector<std::uint32_t>& order) const {
+  std::vector<Sphere> spheres() const {
+    std::vector<Sphere> out;
+    for (std::size_t i = 0; i < x.size(); ++i) out.push_back({x[i], y[i], z[i], radius[i]});
+    return out;
+  }
+  Cloud in_spatial_order() const { return reordered(spatial_order(spheres())); }
+  Cloud reordered(std::span<const std::uint32_t> order) const {
     Cloud out;
     for (const std::uint32_t i : order) out.add(x[i], y[i], z[i], radius[i]);
     return out;
@@ -77,14 +86,15 @@ void expect_invariants(const Bvh& bvh, const Cloud& cloud) {
   }
 }
 
-void expect_permutation(std::vector<std::uint32_t> order, std::size_t n) {
+void expect_permutation(std::span<const std::uint32_t> order, std::size_t n) {
   ASSERT_EQ(order.size(), n);
-  std::sort(order.begin(), order.end());
-  for (std::size_t i = 0; i < n; ++i) ASSERT_EQ(order[i], i);
+  std::vector<std::uint32_t> sorted(order.begin(), order.end());
+  std::sort(sorted.begin(), sorted.end());
+  for (std::size_t i = 0; i < n; ++i) ASSERT_EQ(sorted[i], i);
 }
 
 Bvh build_and_check(const Cloud& cloud) {
-  const std::vector<std::uint32_t> order = spatial_order(cloud.x, cloud.y, cloud.z);
+  const auto order = spatial_order(cloud.spheres());
   expect_permutation(order, cloud.x.size());
   const Cloud sorted = cloud.reordered(order);
   Bvh bvh = build_bvh(sorted.x, sorted.y, sorted.z, sorted.radius);
@@ -134,14 +144,75 @@ double mean_leaf_extent(const Cloud& sorted, std::size_t skip) {
 
 TEST(SpatialOrder, KeepsNeighboursTogetherInSpiteOfAFarOutlier) {
   const Cloud cloud = random_cloud(20000, 5);
-  const double usual =
-      mean_leaf_extent(cloud.reordered(spatial_order(cloud.x, cloud.y, cloud.z)), 0);
+  const double usual = mean_leaf_extent(cloud.in_spatial_order(), 0);
   EXPECT_LT(usual, 0.4);  // 16 of 20000 in a box of 2: a cube of 0.19
   Cloud with_outlier = cloud;
   with_outlier.add(1e8f, 1e8f, 1e8f, 1);
-  const Cloud sorted =
-      with_outlier.reordered(spatial_order(with_outlier.x, with_outlier.y, with_outlier.z));
-  EXPECT_LT(mean_leaf_extent(sorted, Bvh::leaf_size), 1.3 * usual);
+  EXPECT_LT(mean_leaf_extent(with_outlier.in_spatial_order(), Bvh::leaf_size), 1.3 * usual);
+}
+
+// On a full grid of 2^k cells a side, the curve goes from neighbour to neighbour: once through all.
+TEST(SpatialOrder, IsAHilbertCurve) {
+  for (const int side : {2, 4, 16, 64}) {  // the last is sorted by several threads
+    Cloud cloud;
+    for (int i = 0; i < side * side * side; ++i) {
+      cloud.add(static_cast<float>(i % side), static_cast<float>(i / side % side),
+                static_cast<float>(i / side / side), 1);
+    }
+    const Cloud sorted = cloud.in_spatial_order();
+    for (std::size_t i = 1; i < sorted.x.size(); ++i) {
+      const float steps = std::abs(sorted.x[i] - sorted.x[i - 1]) +
+                          std::abs(sorted.y[i] - sorted.y[i - 1]) +
+                          std::abs(sorted.z[i] - sorted.z[i - 1]);
+      ASSERT_EQ(steps, 1) << side << ", particle " << i;
+    }
+  }
+}
+
+/// Many particles in few places, unevenly: one of them holds half.
+Cloud crowded_cloud(std::size_t n) {
+  const Cloud places = random_cloud(1000, 3);
+  std::mt19937 random(4);
+  Cloud cloud;
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t p = i % 2 == 0 ? 0 : random() % places.x.size();
+    cloud.add(places.x[p], places.y[p], places.z[p], places.radius[p]);
+  }
+  return cloud;
+}
+
+TEST(SpatialOrder, KeepsTheInputsOrderOfCoincidentParticles) {
+  for (const std::size_t n : {3000, 400000}) {
+    const Cloud cloud = crowded_cloud(n);
+    const auto order = spatial_order(cloud.spheres());
+    expect_permutation(order, n);
+    const auto place = [&](std::uint32_t i) {
+      return std::array{cloud.x[i], cloud.y[i], cloud.z[i]};
+    };
+    std::size_t distinct = 1;
+    for (std::size_t i = 1; i < n; ++i) {
+      if (place(order[i]) == place(order[i - 1])) {
+        ASSERT_LT(order[i - 1], order[i]);
+      } else {
+        ++distinct;
+      }
+    }
+    EXPECT_LE(distinct, 1000u);  // coincident ones are all together
+  }
+}
+
+TEST(SpatialOrder, IsTheSameForAnyNumberOfThreads) {
+  const tbb::global_control parallelism(tbb::global_control::max_allowed_parallelism, 5);
+  Cloud cloud = random_cloud(300000, 6);
+  for (std::size_t i = 0; i < cloud.x.size(); i += 2) cloud.x[i] *= 1e-5f;  // crowded cells too
+  const std::vector<Sphere> spheres = cloud.spheres();
+  const auto order_with = [&](int threads) {
+    tbb::task_arena arena(threads);
+    return arena.execute([&] { return spatial_order(spheres); });
+  };
+  const auto alone = order_with(1);
+  expect_permutation(alone, spheres.size());
+  EXPECT_EQ(order_with(5), alone);
 }
 
 RC_GTEST_PROP(Bvh, InvariantsHoldWhateverThePositions, ()) {
