@@ -5,7 +5,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -19,13 +18,14 @@
 #include "core/error.h"
 #include "image/write_image.h"
 #include "motes/commands.h"
+#include "motes/count_option.h"
+#include "motes/frame_times.h"
 #include "motes/input.h"
 #include "motes/picture_warnings.h"
+#include "motes/prepare.h"
 #include "motes/scene_options.h"
 #include "render/render_tile.h"
 #include "render/renderer.h"
-#include "render/resolve.h"
-#include "scene/fill_in.h"
 
 namespace motes {
 namespace {
@@ -55,7 +55,7 @@ struct Options {
 /// What --stats reports.
 struct Statistics {
   double read_ms = 0, build_ms = 0;
-  std::vector<double> frame_ms;  // sorted
+  std::vector<double> frame_ms;
   std::size_t particles = 0, particle_bytes = 0, tree_bytes = 0;
   RenderStatistics frame;
 };
@@ -63,10 +63,8 @@ struct Statistics {
 std::string to_json(const Statistics& s) {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
-  const std::size_t n = s.frame_ms.size();
-  const double median = (s.frame_ms[(n - 1) / 2] + s.frame_ms[n / 2]) / 2;
-  const nlohmann::ordered_json out{{"frame_ms", median},
-                                   {"frame_ms_min", s.frame_ms.front()},
+  const nlohmann::ordered_json out{{"frame_ms", median(s.frame_ms)},
+                                   {"frame_ms_min", *std::ranges::min_element(s.frame_ms)},
                                    {"build_ms", s.build_ms},
                                    {"read_ms", s.read_ms},
                                    {"particles", s.particles},
@@ -91,7 +89,6 @@ Framebuffer render_frames(const Renderer& renderer, const ResolvedScene& scene,
     if (frame >= 0) statistics.frame_ms.push_back(statistics.frame.frame_ms);
   }
   console.finish();
-  std::sort(statistics.frame_ms.begin(), statistics.frame_ms.end());
   return image;
 }
 
@@ -143,42 +140,27 @@ void run(const Options& options) {
   refuse_same_file(outputs, {"data.path", scene.data_path});
   options.changes.apply(scene);
   Statistics statistics;
-  std::optional<Renderer> renderer;
-  ResolvedScene resolved;
-  DataExtent extent;
-  {
-    // The particles as they were read are gone before the first frame: only kernels stay.
-    const Input input = read_particles(scene, console);
-    statistics.read_ms = input.read_ms;
-    extent = {input.particles.bounds(), input.particles.length_unit};
-    with_place(options.path, options.changes, [&] {
-      color_by_species(scene, input.particles);
-      const auto fields = expand_fields(scene, input.particles);
-      const auto sources =
-          make_field_sources(input.particles, fields, scene.kernel, console.warnings(), &console);
-      console.print_warnings();
-      console.update("building the tree", 0);
-      renderer.emplace(input.particles, sources);
-      resolved = resolve(scene, input.particles, fields, sources, renderer->kernels(), &console);
-      if (saved_scene) {
-        const std::filesystem::path directory =
-            std::filesystem::path(options.saved_scene).parent_path();
-        saved_scene->write(scene_to_json(fill_in(scene, fields, sources, resolved), directory));
-      }
-    });
+  const PreparedScene prepared =
+      read_and_prepare_scene(scene, options.path, options.changes, console);
+  const Renderer& renderer = prepared.renderer;
+  if (saved_scene) {
+    const std::filesystem::path directory =
+        std::filesystem::path(options.saved_scene).parent_path();
+    saved_scene->write(scene_to_json(prepared.filled_in, directory));
   }
   const bool between_samples =
-      warn_of_large_steps(renderer->kernels(), resolved.step_size, console.warnings());
-  statistics.build_ms = renderer->build_ms();
-  statistics.particles = renderer->kernels().size();
-  statistics.particle_bytes = renderer->kernels().particle_bytes();
-  statistics.tree_bytes = renderer->kernels().bvh.bytes();
+      warn_of_large_steps(renderer.kernels(), prepared.resolved.step_size, console.warnings());
+  statistics.read_ms = prepared.read_ms;
+  statistics.build_ms = renderer.build_ms();
+  statistics.particles = renderer.kernels().size();
+  statistics.particle_bytes = renderer.kernels().particle_bytes();
+  statistics.tree_bytes = renderer.kernels().bvh.bytes();
 
   const Framebuffer image = with_place(options.path, options.changes, [&] {
-    return render_frames(*renderer, resolved, options, console, statistics);
+    return render_frames(renderer, prepared.resolved, options, console, statistics);
   });
-  warn_of_empty_picture(image, renderer->kernels(), resolved.camera, extent, between_samples,
-                        console.warnings());
+  warn_of_empty_picture(image, renderer.kernels(), prepared.resolved.camera, prepared.extent,
+                        between_samples, console.warnings());
   write_image(output, format, image, scene.render.termination_opacity, scene.render.background);
   output.commit();
   if (saved_scene) saved_scene->commit();
@@ -196,19 +178,6 @@ std::string check_suffix(const std::string& path) {
     return error.what();
   }
   return "";
-}
-
-/// A whole number from 1 to `max`.
-void add_count(CLI::App& command, const std::string& name, int& count, int max,
-               const std::string& description) {
-  const auto check = [max](const std::string& text) -> std::string {
-    int value = 0;
-    const char* const last = text.data() + text.size();
-    const auto [end, error] = std::from_chars(text.data(), last, value);
-    if (error == std::errc{} && end == last && value >= 1 && value <= max) return "";
-    return fmt::format("expected a whole number from 1 to {}, found '{}'", max, printable(text));
-  };
-  command.add_option(name, count, description)->type_name("N")->check(CLI::Validator(check, ""));
 }
 
 }  // namespace
