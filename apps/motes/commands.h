@@ -7,6 +7,7 @@ class App;
 
 namespace motes {
 
+void add_bench_command(CLI::App& program);
 void add_info_command(CLI::App& program);
 void add_probe_command(CLI::App& program);
 void add_render_command(CLI::App& program);

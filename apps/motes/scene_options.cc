@@ -295,9 +295,13 @@ void add_field_options(CLI::App& command, SceneChanges& changes) {
              });
 }
 
-void add_picture_options(CLI::App& command, SceneChanges& changes) {
+void add_size_option(CLI::App& command, SceneChanges& changes) {
   add_option(command, changes, "--size", "WxH",
              "size of the picture in pixels (default: 1024x1024)", read_size);
+}
+
+void add_picture_options(CLI::App& command, SceneChanges& changes) {
+  add_size_option(command, changes);
   add_camera_options(command, changes);
   add_option(
       command, changes, "--transfer-function", "NAME|FILE.json",

@@ -36,6 +36,8 @@ class SceneChanges {
 void add_data_options(CLI::App& command, SceneChanges& changes);
 /// --radius, --weight, --support-factor, --kernel-scale: what the fields are.
 void add_field_options(CLI::App& command, SceneChanges& changes);
+/// --size: one of add_picture_options(), for commands that take no other of them.
+void add_size_option(CLI::App& command, SceneChanges& changes);
 /// Camera, transfer function, lighting and so on: what the picture shows of them.
 void add_picture_options(CLI::App& command, SceneChanges& changes);
 

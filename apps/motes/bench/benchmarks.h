@@ -1,0 +1,28 @@
+// What `motes bench` can be asked for.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "motes/bench/catalogue.h"
+#include "motes/bench/workplace.h"
+
+namespace motes {
+
+/// What the options of the command line say.
+struct BenchOptions {
+  int width = 1024, height = 1024;
+  int repeat = 5;   ///< frames of which the median is taken
+  int threads = 0;  ///< 0: all
+};
+
+/// What one benchmark works with.
+struct BenchJob {
+  const Workplace& workplace;
+  std::vector<const BenchScene*> scenes;
+  BenchOptions options;
+};
+
+void run_scenes(const BenchJob& job);
+
+}  // namespace motes

@@ -1,0 +1,130 @@
+// motes bench: the options, and which benchmark they are for.
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/error.h"
+#include "motes/bench/benchmarks.h"
+#include "motes/commands.h"
+#include "motes/count_option.h"
+#include "motes/scene_options.h"
+#include "render/render_tile.h"
+
+namespace motes {
+namespace {
+
+constexpr const char* examples =
+    R"(WHAT is one of:
+  scenes    make the particles of the scenes
+  table1    their sizes, memory and build times, beside the paper's Table 1
+  table2    frames per second of all engines, far and close, beside the paper's Table 2
+
+Scenes: zeolite, tryptophan, nanobowl, nanosphere_90k, nanosphere_740k, sio2, anp3, cosmology.
+Results are printed, and written to out/bench as JSON and SVG. What is missing of the scenes is made
+first. docs/bench.md tells what each benchmark measures.
+
+Examples:
+  motes bench scenes sio2
+  motes bench table1
+  motes bench table2 --scenes zeolite,nanobowl
+  MOTES_TARGET=AVX2 motes bench table2 --repeat 9 --output out/avx2)";
+
+struct Benchmark {
+  std::string_view name;
+  void (*run)(const BenchJob&);
+};
+constexpr Benchmark benchmarks[] = {{"scenes", run_scenes}};
+
+struct Options {
+  std::string what, data = "data/bench", output = "out/bench";
+  std::vector<std::string> scenes;
+  std::optional<double> memory_gib;
+  SceneChanges size;
+  BenchOptions bench;
+};
+
+/// A mistake in the value of `option`, told while it is still a matter of the command line.
+template <class Check>
+CLI::Validator validator(const Check& check) {
+  return {[check](std::string& text) -> std::string {
+            try {
+              check(text);
+            } catch (const Error& error) {
+              return error.what();
+            }
+            return "";
+          },
+          ""};
+}
+
+const Benchmark& find_benchmark(const std::string& name) {
+  const auto* it = std::ranges::find(benchmarks, name, &Benchmark::name);
+  if (it != std::end(benchmarks)) return *it;
+  std::vector<std::string> known;
+  for (const Benchmark& each : benchmarks) known.emplace_back(each.name);
+  throw unknown_name("benchmark", name, known);
+}
+
+void run(const Options& options) {
+  instruction_set();  // tells at once of a MOTES_TARGET that is not to be had
+  std::optional<tbb::global_control> limit;
+  if (options.bench.threads > 0) {
+    limit.emplace(tbb::global_control::max_allowed_parallelism,
+                  static_cast<std::size_t>(options.bench.threads));
+  }
+  std::optional<std::size_t> memory;
+  if (options.memory_gib) memory = static_cast<std::size_t>(*options.memory_gib * 0x1p30);
+  const Workplace workplace(options.data, options.output, memory);
+  Scene scene;
+  options.size.apply(scene);
+  BenchJob job{workplace, find_bench_scenes(options.scenes), options.bench};
+  job.options.width = scene.render.width;
+  job.options.height = scene.render.height;
+  find_benchmark(options.what).run(job);
+}
+
+}  // namespace
+
+void add_bench_command(CLI::App& program) {
+  CLI::App* command =
+      program.add_subcommand("bench", "Measure Motes on the data sets of the paper.");
+  const auto options = std::make_shared<Options>();
+  command->add_option("WHAT", options->what, "which benchmark")
+      ->required()
+      ->type_name("")
+      ->check(validator(find_benchmark));
+  const CLI::Validator scene_name =
+      validator([](const std::string& name) { find_bench_scenes({name}); });
+  CLI::Option* names = command->add_option("SCENE", options->scenes, "which scenes (default: all)")
+                           ->type_name("")
+                           ->delimiter(',')
+                           ->check(scene_name);
+  command->add_option("--scenes", options->scenes, "the same, as A,B,...")
+      ->type_name("A,B")
+      ->delimiter(',')
+      ->check(scene_name)
+      ->excludes(names);
+  add_size_option(*command, options->size);
+  add_count(*command, "--repeat", options->bench.repeat, 1000,
+            "frames of which the median is taken (default: 5)");
+  add_count(*command, "--threads", options->bench.threads, 4096,
+            "threads to use (default: all cores)");
+  command->add_option("--memory", options->memory_gib, "most memory to use (default: what is free)")
+      ->type_name("GIB")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--data", options->data, "Motes' data/bench (default: data/bench)")
+      ->type_name("DIR");
+  command->add_option("--output", options->output, "where results go (default: out/bench)")
+      ->type_name("DIR");
+  command->footer(examples);
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace motes
