@@ -24,5 +24,7 @@ struct BenchJob {
 };
 
 void run_scenes(const BenchJob& job);
+void run_table1(const BenchJob& job);
+void run_table2(const BenchJob& job);
 
 }  // namespace motes

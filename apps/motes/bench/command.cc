@@ -40,7 +40,8 @@ struct Benchmark {
   std::string_view name;
   void (*run)(const BenchJob&);
 };
-constexpr Benchmark benchmarks[] = {{"scenes", run_scenes}};
+constexpr Benchmark benchmarks[] = {
+    {"scenes", run_scenes}, {"table1", run_table1}, {"table2", run_table2}};
 
 struct Options {
   std::string what, data = "data/bench", output = "out/bench";

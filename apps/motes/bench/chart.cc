@@ -1,0 +1,187 @@
+// Draws axes, bars and lines; no styling beyond what a reader needs.
+#include "motes/bench/chart.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string_view>
+
+namespace motes {
+namespace {
+
+// Told apart by people with any colour vision, and on paper.
+constexpr std::array<std::string_view, 6> colors{"#0f6fc6", "#f28e2b", "#9a9a9a",
+                                                 "#2a9d6f", "#c23b4e", "#7a5195"};
+constexpr double left = 70, top = 62, plot_height = 300, right = 20;
+
+std::string escaped(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '&') {
+      out += "&amp;";
+    } else if (c == '<') {
+      out += "&lt;";
+    } else {
+      out += c;
+    }
+  }
+  return out;
+}
+
+/// A drawing that grows by elements.
+class Drawing {
+ public:
+  Drawing(double width, double height) : width_(width), height_(height) {}
+
+  void line(double x1, double y1, double x2, double y2, std::string_view color, double width = 1) {
+    body_ += fmt::format(
+        "<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"{}\" "
+        "stroke-width=\"{}\"/>\n",
+        x1, y1, x2, y2, color, width);
+  }
+  void rectangle(double x, double y, double width, double height, std::string_view color,
+                 std::string_view tip = {}) {
+    body_ += fmt::format(
+        "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" "
+        "fill=\"{}\"><title>{}</title></rect>\n",
+        x, y, width, height, color, escaped(tip));
+  }
+  void circle(double x, double y, std::string_view color) {
+    body_ +=
+        fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3.5\" fill=\"{}\"/>\n", x, y, color);
+  }
+  /// `anchor` is start, middle or end; `turn` in degrees.
+  void text(double x, double y, std::string_view text, std::string_view anchor = "middle",
+            double size = 12, double turn = 0) {
+    body_ += fmt::format(
+        "<text x=\"{0:.1f}\" y=\"{1:.1f}\" text-anchor=\"{2}\" font-size=\"{3}\" "
+        "transform=\"rotate({4} {0:.1f} {1:.1f})\">{5}</text>\n",
+        x, y, anchor, size, turn, escaped(text));
+  }
+  std::string svg() const {
+    return fmt::format(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" "
+        "viewBox=\"0 0 {0:.0f} {1:.0f}\" font-family=\"sans-serif\" fill=\"#222\">\n"
+        "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n{2}</svg>\n",
+        width_, height_, body_);
+  }
+
+ private:
+  double width_, height_;
+  std::string body_;
+};
+
+/// Title, name of the vertical axis and the names of the series with their colours.
+template <class Series>
+void draw_captions(Drawing& drawing, const std::string& title, const std::string& value_name,
+                   const std::vector<Series>& series) {
+  drawing.text(left, 22, title, "start", 15);
+  drawing.text(18, top + plot_height / 2, value_name, "middle", 12, -90);
+  double x = left;
+  for (std::size_t s = 0; s < series.size(); ++s) {
+    drawing.rectangle(x, 36, 12, 12, colors[s % colors.size()]);
+    drawing.text(x + 17, 46, series[s].name, "start");
+    x += 34 + 6.6 * static_cast<double>(series[s].name.size());
+  }
+}
+
+/// A step of 1, 2 or 5 times a power of ten that divides `range` into about five.
+double tick_step(double range) {
+  const double power = std::pow(10, std::floor(std::log10(range / 4)));
+  for (const double factor : {1.0, 2.0, 5.0}) {
+    if (range / (factor * power) <= 6) return factor * power;
+  }
+  return 10 * power;
+}
+
+}  // namespace
+
+std::string to_svg(const BarChart& chart) {
+  constexpr double bar = 11, gap = 12, label_height = 110;
+  double low = 1e300, high = 0;
+  for (const auto& series : chart.series) {
+    for (const auto& value : series.values) {
+      if (!value) continue;
+      low = std::min(low, *value);
+      high = std::max(high, *value);
+    }
+  }
+  const double first = std::floor(std::log10(low)),
+               last = std::max(first + 1, std::ceil(std::log10(high)));
+  const auto height_of = [&](double value) {
+    return plot_height * (std::log10(value) - first) / (last - first);
+  };
+  const double group = bar * static_cast<double>(chart.series.size()) + gap;
+  const double width = group * static_cast<double>(chart.categories.size());
+  Drawing drawing(std::max(left + width + right, 520.0), top + plot_height + label_height);
+  draw_captions(drawing, chart.title, chart.value_name, chart.series);
+  for (double decade = first; decade <= last; ++decade) {
+    const double y = top + plot_height - height_of(std::pow(10, decade));
+    drawing.line(left, y, left + width, y, "#ddd");
+    drawing.text(left - 6, y + 4, fmt::format("{:g}", std::pow(10, decade)), "end");
+  }
+  for (std::size_t c = 0; c < chart.categories.size(); ++c) {
+    const double x = left + group * static_cast<double>(c) + gap / 2;
+    for (std::size_t s = 0; s < chart.series.size(); ++s) {
+      const auto& value = chart.series[s].values[c];
+      if (!value) continue;
+      drawing.rectangle(
+          x + bar * static_cast<double>(s), top + plot_height - height_of(*value), bar - 1,
+          height_of(*value), colors[s % colors.size()],
+          fmt::format("{}, {}: {:.3g}", chart.categories[c], chart.series[s].name, *value));
+    }
+    drawing.text(x + (group - gap) / 2 + 4, top + plot_height + 14, chart.categories[c], "end", 11,
+                 -40);
+  }
+  drawing.line(left, top + plot_height, left + width, top + plot_height, "#222");
+  return drawing.svg();
+}
+
+std::string to_svg(const LineChart& chart) {
+  constexpr double width = 520, label_height = 50;
+  const auto place = [&chart](double x) { return chart.log_x ? std::log10(x) : x; };
+  double low = 1e300, high = -1e300, top_value = 0;
+  for (const auto& series : chart.series) {
+    for (const auto& [x, y] : series.points) {
+      low = std::min(low, place(x));
+      high = std::max(high, place(x));
+      top_value = std::max(top_value, y);
+    }
+  }
+  const double step = tick_step(top_value);
+  const double last = step * std::ceil(top_value / step);
+  const auto to_x = [&](double x) {
+    return left + 12 + (width - 24) * (place(x) - low) / (high - low);
+  };
+  const auto to_y = [&](double y) { return top + plot_height * (1 - y / last); };
+
+  Drawing drawing(left + width + right, top + plot_height + label_height);
+  draw_captions(drawing, chart.title, chart.y_name, chart.series);
+  for (double y = 0; y <= last * 1.0001; y += step) {
+    drawing.line(left, to_y(y), left + width, to_y(y), "#ddd");
+    drawing.text(left - 6, to_y(y) + 4, fmt::format("{:g}", y), "end");
+  }
+  const double x_step = chart.log_x ? 1 : tick_step(high - low);
+  for (double x = x_step * std::ceil(low / x_step); x <= high * 1.0001; x += x_step) {
+    const double value = chart.log_x ? std::pow(10, x) : x;
+    drawing.line(to_x(value), top + plot_height, to_x(value), top + plot_height + 5, "#222");
+    drawing.text(to_x(value), top + plot_height + 18, fmt::format("{:g}", value));
+  }
+  drawing.text(left + width / 2, top + plot_height + 38, chart.x_name);
+  for (std::size_t s = 0; s < chart.series.size(); ++s) {
+    const auto& points = chart.series[s].points;
+    const std::string_view color = colors[s % colors.size()];
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const double x = to_x(points[i].first), y = to_y(points[i].second);
+      if (i > 0)
+        drawing.line(to_x(points[i - 1].first), to_y(points[i - 1].second), x, y, color, 2);
+      drawing.circle(x, y, color);
+    }
+  }
+  drawing.line(left, top + plot_height, left + width, top + plot_height, "#222");
+  return drawing.svg();
+}
+
+}  // namespace motes

@@ -1,0 +1,36 @@
+// Small charts as SVG.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace motes {
+
+/// Groups of bars over a logarithmic axis; a value may be missing.
+struct BarChart {
+  struct Series {
+    std::string name;
+    std::vector<std::optional<double>> values;  ///< > 0; one a category
+  };
+  std::string title, value_name;
+  std::vector<std::string> categories;
+  std::vector<Series> series;
+};
+
+/// Lines through points; the vertical axis starts at 0.
+struct LineChart {
+  struct Series {
+    std::string name;
+    std::vector<std::pair<double, double>> points;
+  };
+  std::string title, x_name, y_name;
+  bool log_x = false;
+  std::vector<Series> series;
+};
+
+std::string to_svg(const BarChart& chart);
+std::string to_svg(const LineChart& chart);
+
+}  // namespace motes

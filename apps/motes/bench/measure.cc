@@ -1,0 +1,98 @@
+// Reads, prepares and times scenes.
+#include "motes/bench/measure.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "core/error.h"
+#include "motes/frame_times.h"
+
+namespace motes {
+namespace {
+
+/// Mean opacity of the pixels in which there is anything.
+double mean_opacity(const Framebuffer& image) {
+  double sum = 0, count = 0;
+  for (std::size_t i = 3; i < image.rgba.size(); i += 4) {
+    if (image.rgba[i] <= 0) continue;
+    sum += static_cast<double>(image.rgba[i]);
+    ++count;
+  }
+  return count > 0 ? sum / count : 0;
+}
+
+}  // namespace
+
+Input read_bench_particles(const BenchJob& job, const BenchScene& scene, Console& console) {
+  job.workplace.make_if_missing(scene);
+  Input input = read_particles(job.workplace.open(scene), console);
+  if (input.particles.size() != scene.particles) {
+    throw Error(job.workplace.particle_file(scene),
+                fmt::format("has {} particles; expected {} (motes bench scenes {} makes them)",
+                            input.particles.size(), scene.particles, scene.name));
+  }
+  return input;
+}
+
+PreparedScene prepare_bench_scene(const BenchJob& job, const BenchScene& entry, Console& console) {
+  const Input input = read_bench_particles(job, entry, console);
+  Scene scene = job.workplace.open(entry);
+  scene.render.width = job.options.width;
+  scene.render.height = job.options.height;
+  PreparedScene prepared =
+      prepare_scene(scene, input.particles, job.workplace.scene_file(entry), {}, console);
+  prepared.read_ms = input.read_ms;
+  return prepared;
+}
+
+Camera moved_closer(const Camera& camera, double fraction) {
+  Camera closer = camera;
+  closer.eye = camera.target + fraction * (camera.eye - camera.target);
+  return closer;
+}
+
+std::vector<FrameTimes> measure_frames(const Renderer& renderer,
+                                       const std::vector<Variant>& variants,
+                                       const BenchOptions& options, Console& console) {
+  std::vector<FrameTimes> results(variants.size());
+  std::vector<std::vector<double>> times(variants.size());
+  Framebuffer image;
+  for (int round = -1; round < options.repeat; ++round) {
+    for (std::size_t v = 0; v < variants.size(); ++v) {
+      const bool warm_up = round < 0;
+      if (!warm_up && results[v].frames == 1) continue;  // it ran out of patience
+      RenderStatistics statistics;
+      renderer.render(variants[v].scene, {options.threads, variants[v].samples_per_pass, &console},
+                      image, &statistics);
+      const bool too_long = statistics.frame_ms > variants[v].patience_ms;
+      if (!warm_up || too_long) times[v].push_back(statistics.frame_ms);
+      if (!warm_up) continue;
+      FrameTimes& result = results[v];
+      result.frames = too_long ? 1 : 0;
+      result.samples = statistics.samples;
+      result.kernel_evaluations = statistics.kernel_evaluations;
+      result.opacity = mean_opacity(image);
+      result.samples_per_ray =
+          static_cast<double>(statistics.samples) / static_cast<double>(image.num_pixels());
+      result.threads = statistics.threads;
+    }
+  }
+  console.finish();
+  for (std::size_t v = 0; v < variants.size(); ++v) {
+    results[v].median_ms = median(times[v]);
+    results[v].min_ms = *std::ranges::min_element(times[v]);
+    results[v].frames = static_cast<int>(times[v].size());
+  }
+  return results;
+}
+
+double geometric_mean(const std::vector<double>& values) {
+  const double sum = std::accumulate(values.begin(), values.end(), 0.0,
+                                     [](double s, double v) { return s + std::log(v); });
+  return std::exp(sum / static_cast<double>(values.size()));
+}
+
+}  // namespace motes

@@ -1,0 +1,26 @@
+// Results as files that say where they come from.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <string_view>
+
+#include "motes/bench/benchmarks.h"
+
+namespace motes {
+
+/// One line: processor, threads, instruction set, compiler.
+std::string machine_line(const BenchOptions& options);
+
+/// Writes `rows`, with the machine and the settings, to NAME.json of the results.
+void write_results(const BenchJob& job, std::string_view name, const nlohmann::ordered_json& rows);
+
+/// Writes `text` to the result file `name` and says so on the standard output.
+void write_result_file(const BenchJob& job, std::string_view name, std::string_view text);
+
+/// Most memory that the process had since reset_peak_memory(), bytes; 0 where the system does not
+/// tell.
+std::size_t peak_memory();
+void reset_peak_memory();
+
+}  // namespace motes

@@ -1,0 +1,133 @@
+// motes bench: scenes that are always the same, results that can be read, refusals before the work.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "apps/command_line.h"
+
+namespace motes {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+constexpr const char* data = " --data '" MOTES_SOURCE_DIR "/data/bench'";
+
+class Bench : public CommandLine {
+ protected:
+  /// `arguments` with the bundled data, at a tiny size.
+  Outcome bench(const std::string& arguments) { return run("bench " + arguments + data); }
+  Outcome measure(const std::string& arguments) {
+    const Outcome outcome = bench(arguments + " --size 64x64 --repeat 1");
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return outcome;
+  }
+  nlohmann::json result(const std::string& name) {
+    return nlohmann::json::parse(workspace_.read("out/bench/" + name + ".json"));
+  }
+};
+
+TEST_F(Bench, ScenesAreTheSameEveryTime) {
+  const std::string file = "out/bench/scenes/tryptophan.npy";
+  const Outcome first = bench("scenes tryptophan");
+  EXPECT_EQ(first.status, 0) << first.err;
+  EXPECT_THAT(first.out, HasSubstr("6830"));
+  const std::string bytes = workspace_.read(file);
+  EXPECT_GT(bytes.size(), std::size_t{6830 * 17});
+  EXPECT_EQ(bench("scenes --scenes tryptophan").status, 0);
+  EXPECT_TRUE(workspace_.read(file) == bytes);
+  EXPECT_EQ(bench("scenes tryptophan --threads 1 --output other").status, 0);
+  EXPECT_TRUE(workspace_.read("other/scenes/tryptophan.npy") == bytes);
+
+  const auto info = nlohmann::json::parse(run("info --json " + file).out);
+  EXPECT_EQ(info["particles"], 6830);
+  EXPECT_EQ(info["species"].size(), 5);
+  EXPECT_EQ(info["properties"], nlohmann::json({"molecule"}));
+}
+
+TEST_F(Bench, CarvedSpheresHaveTheirNumberOfAtoms) {
+  const Outcome outcome = bench("scenes nanosphere_740k");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  const auto info =
+      nlohmann::json::parse(run("info --json out/bench/scenes/nanosphere_740k.npy").out);
+  EXPECT_EQ(info["particles"], 742000);
+  for (const int axis : {0, 1, 2}) {
+    EXPECT_NEAR(info["bounds"]["max"][axis].get<double>(), 120.5, 1);
+    EXPECT_NEAR(info["bounds"]["min"][axis].get<double>(), -120.5, 1);
+  }
+}
+
+TEST_F(Bench, Table1NamesSizesAndBuildTimes) {
+  measure("table1 --scenes zeolite");
+  const auto table = result("table1");
+  ASSERT_EQ(table["rows"].size(), 1U);
+  const auto& row = table["rows"][0];
+  EXPECT_EQ(row["scene"], "zeolite");
+  EXPECT_EQ(row["fields"], 2);
+  EXPECT_GT(row["build_s"].get<double>(), 0);
+  EXPECT_NEAR(row["bytes_per_particle"].get<double>() * row["particles"].get<double>(),
+              row["particle_bytes"].get<double>() + row["tree_bytes"].get<double>(), 1);
+  EXPECT_EQ(row["paper"]["build_s"], 0.0256);
+  EXPECT_THAT(workspace_.read("out/bench/table1.svg"), StartsWith("<svg "));
+}
+
+TEST_F(Bench, Table2ComparesEnginesInBothViews) {
+  const Outcome outcome = measure("table2 --scenes nanobowl,zeolite");
+  EXPECT_EQ(outcome.err, "");
+  const auto table = result("table2");
+  for (const char* key : {"processor", "compiler", "instruction_set", "system"}) {
+    EXPECT_FALSE(table["machine"][key].get<std::string>().empty()) << key;
+  }
+  EXPECT_EQ(table["settings"]["width"], 64);
+  ASSERT_EQ(table["rows"].size(), 4U);
+  for (const auto& row : table["rows"]) {
+    EXPECT_THAT(outcome.out, HasSubstr(row["scene"].get<std::string>()));
+    const double ratio = row["coherent_over_sweep"];
+    EXPECT_TRUE(std::isfinite(ratio) && ratio > 0) << row;
+    EXPECT_GT(row["direct"]["fps"].get<double>(), 0);
+    EXPECT_EQ(row["sweep"]["samples"], row["coherent"]["samples"]);
+    // Half-transparent, as it is meant to be.
+    EXPECT_GT(row["mean_opacity"].get<double>(), 0.2);
+    EXPECT_LT(row["mean_opacity"].get<double>(), 0.95);
+  }
+  EXPECT_EQ(table["rows"][0]["scene"], "zeolite");
+  EXPECT_TRUE(table["rows"][0]["paper_cpu_fps"].is_null());
+  EXPECT_EQ(table["rows"][2]["paper_cpu_fps"], 3.65);
+  EXPECT_EQ(table["rows"][3]["paper_cpu_fps"], 2.53);
+  EXPECT_THAT(workspace_.read("out/bench/table2.svg"), HasSubstr("nanobowl close"));
+}
+
+TEST_F(Bench, ASceneTooLargeForTheMemoryIsRefusedFirst) {
+  for (const std::string what : {"scenes", "table1", "table2"}) {
+    EXPECT_THAT(failure("bench " + what + " tryptophan cosmology --memory 2" + data, 1),
+                StartsWith("motes: error: cosmology: 82051072 particles need "));
+  }
+  EXPECT_FALSE(workspace_.exists("out/bench/scenes/tryptophan.npy"));
+}
+
+TEST_F(Bench, WrongCommandLines) {
+  EXPECT_THAT(failure("bench", 2), HasSubstr("WHAT"));
+  EXPECT_THAT(failure("bench table3", 2), HasSubstr("did you mean 'table"));
+  EXPECT_THAT(failure("bench scenes zeolit", 2), HasSubstr("did you mean 'zeolite'"));
+  EXPECT_THAT(failure("bench table1 --scenes zeolite,fog", 2), HasSubstr("unknown scene 'fog'"));
+  EXPECT_THAT(failure("bench table1 --repeat 0", 2), HasSubstr("--repeat"));
+  EXPECT_THAT(failure("bench table1 --size 5", 2), HasSubstr("--size"));
+  EXPECT_THAT(failure("bench table1 --memory -1", 2), HasSubstr("--memory"));
+  EXPECT_THAT(failure("bench table1", 1),
+              StartsWith("motes: error: data/bench: there is no such directory"));
+}
+
+TEST_F(Bench, AFileOfAnotherSceneIsRefused) {
+  EXPECT_EQ(bench("scenes tryptophan").status, 0);
+  workspace_.write("out/bench/scenes/tryptophan.npy", three_atoms);
+  const Outcome outcome = bench("table1 tryptophan");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("has 3 particles; expected 6830"));
+  EXPECT_FALSE(workspace_.exists("out/bench/table1.json"));
+}
+
+}  // namespace
+}  // namespace motes
