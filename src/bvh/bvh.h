@@ -2,7 +2,8 @@
 // node.
 //
 // Particles are put in the order of a Hilbert curve; sixteen in a row make a leaf, eight leaves in
-// a row a node, eight nodes a node of the next level, up to one root. So there are no pointers, the
+// a row a node, eight nodes a node of the next level, up to one root; particles of very different
+// radii lie in different stretches of the order. So there are no pointers, the
 // depth is the logarithm of the number of particles whatever their positions, and a leaf's
 // particles load straight into vectors. Supports are no part of the tree: traversal extends the
 // bounds by support_factor * max_radius, so that sigma changes without touching it.
@@ -50,9 +51,11 @@ struct Sphere {
 };
 
 /// Particles' order along a Hilbert curve through their bounding box: element i is the particle
-/// that comes i-th. Deterministic: the same for any number of threads; particles in one place keep
-/// the order of the input. Centres are finite, and fewer than 2^32. Takes 16 bytes a particle while
-/// it works, besides what it returns.
+/// that comes i-th. Where radii differ by more than a factor of four and some are larger than the
+/// particles' spacing, those come first, class by class, each class along a curve of its own, so
+/// that they do not extend the leaves of the others. Deterministic: the same for any number of
+/// threads; particles in one place keep the order of the input. Centres are finite, and fewer than
+/// 2^32. Takes 16 bytes a particle while it works, besides what it returns.
 UninitializedVector<std::uint32_t> spatial_order(std::span<const Sphere> spheres);
 
 /// The tree over particles that are already in spatial order. radius: one a particle, or one for

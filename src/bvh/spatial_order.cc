@@ -276,6 +276,76 @@ void sort_spatially(std::span<const Sphere> spheres, std::span<Word> words,
   });
 }
 
+/// Radii within a class differ by this power of two at most, where there are classes.
+constexpr int class_bits = 2;
+constexpr int max_classes = 64;
+
+/// Smallest and largest binary exponent of the radii (biased; the radii are >= 0).
+struct Exponents {
+  int min = std::numeric_limits<int>::max(), max = 0;
+
+  void add(int exponent) {
+    min = std::min(min, exponent);
+    max = std::max(max, exponent);
+  }
+};
+
+int exponent_of(const Sphere& sphere) {
+  return static_cast<int>(std::bit_cast<std::uint32_t>(sphere.radius) >> 23);
+}
+
+Exponents exponents_of(std::span<const Sphere> spheres) {
+  return tbb::parallel_reduce(
+      tbb::blocked_range<std::size_t>(0, spheres.size(), grain), Exponents{},
+      [&](const auto& range, Exponents e) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) e.add(exponent_of(spheres[i]));
+        return e;
+      },
+      [](Exponents a, const Exponents& b) {
+        a.add(b.min);
+        a.add(b.max);
+        return a;
+      });
+}
+
+/// Exponent of the particles' mean spacing, were they spread evenly over their bounds: kernels
+/// smaller than that hardly extend a leaf's box, whatever their radii.
+int spacing_exponent(std::span<const Sphere> spheres, std::span<const Word> words) {
+  const Vector3d d(Grid::of_many(spheres, words).box.diagonal());
+  const double spacing = std::cbrt(d.x * d.y * d.z / static_cast<double>(words.size()));
+  return exponent_of({0, 0, 0, static_cast<float>(spacing)});
+}
+
+/// Sorts `words`, in the order of the particles, by classes of radii, the largest first, and each
+/// class along its own curve. A leaf or node then holds kernels of one class, but for one a level
+/// where two classes meet; so a few huge kernels extend few boxes. All that are smaller than the
+/// spacing are one class.
+void sort_by_class(std::span<const Sphere> spheres, std::span<Word> words,
+                   std::span<Word> scratch) {
+  const Exponents exponents = exponents_of(spheres);
+  if (exponents.max - exponents.min <= class_bits) return sort_spatially(spheres, words, scratch);
+  const int least = spacing_exponent(spheres, words);
+  const auto class_above = [least](int exponent) {
+    return (std::max(exponent - least, 0) + class_bits - 1) / class_bits;
+  };
+  const int largest = class_above(exponents.max);
+  if (largest == 0) return sort_spatially(spheres, words, scratch);
+  const auto class_of = [&](Word word) {
+    const int steps = largest - class_above(exponent_of(spheres[index_of(word)]));
+    return static_cast<std::size_t>(std::min(steps, max_classes - 1));
+  };
+  const Counts begin = scatter(words, scratch, class_of);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, words.size(), grain),
+                    [&](const auto& range) {
+                      std::copy(scratch.begin() + static_cast<std::ptrdiff_t>(range.begin()),
+                                scratch.begin() + static_cast<std::ptrdiff_t>(range.end()),
+                                words.begin() + static_cast<std::ptrdiff_t>(range.begin()));
+                    });
+  for_each_digit(begin, words.size(), [&](std::size_t first, std::size_t count) {
+    sort_spatially(spheres, words.subspan(first, count), scratch.subspan(first, count));
+  });
+}
+
 }  // namespace
 
 UninitializedVector<std::uint32_t> spatial_order(std::span<const Sphere> spheres) {
@@ -287,7 +357,7 @@ UninitializedVector<std::uint32_t> spatial_order(std::span<const Sphere> spheres
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, grain), [&](const auto& range) {
       for (std::size_t i = range.begin(); i != range.end(); ++i) words[i] = i;
     });
-    sort_spatially(spheres, words, scratch);
+    sort_by_class(spheres, words, scratch);
   }
   UninitializedVector<std::uint32_t> order(n);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, grain), [&](const auto& range) {

@@ -201,6 +201,43 @@ TEST(SpatialOrder, KeepsTheInputsOrderOfCoincidentParticles) {
   }
 }
 
+TEST(SpatialOrder, KeepsAFewHugeKernelsOutOfTheLeavesOfTheOthers) {
+  Cloud cloud = random_cloud(20000, 8);
+  for (float& r : cloud.radius) r *= 1e-3f;
+  for (std::size_t i = 0; i < cloud.radius.size(); i += 1000) cloud.radius[i] = 0.5f;
+  for (std::size_t i = 500; i < cloud.radius.size(); i += 1000) cloud.radius[i] = 1e8f;
+  const Bvh bvh = build_and_check(cloud);
+  // Twenty of each kind: two leaves, the second of which is shared with the next kind.
+  std::size_t huge = 0, large = 0;
+  traverse(
+      bvh,
+      [&](const Bvh::Node& node) {
+        unsigned mask = 0;
+        for (std::size_t c = 0; c < Bvh::width; ++c)
+          mask |= (node.max_radius[c] > 0 ? 1u : 0u) << c;
+        return mask;
+      },
+      [&](std::size_t leaf) {
+        const Bvh::Node& node = bvh.nodes[bvh.level_begin.back() + leaf / Bvh::width];
+        const float radius = node.max_radius[leaf % Bvh::width];
+        huge += radius > 1 ? 1 : 0;
+        large += radius > 0.1f && radius < 1 ? 1 : 0;
+      });
+  EXPECT_EQ(huge, 2u);
+  EXPECT_LE(large, 2u);
+}
+
+TEST(SpatialOrder, IsOneCurveWhereAllKernelsAreSmallerThanTheirSpacing) {
+  const Cloud tiny = [] {
+    Cloud cloud = random_cloud(20000, 9);
+    for (float& r : cloud.radius) r *= 1e-3f;
+    return cloud;
+  }();
+  Cloud equal = tiny;
+  equal.radius.assign(equal.radius.size(), 1e-3f);
+  EXPECT_EQ(spatial_order(tiny.spheres()), spatial_order(equal.spheres()));
+}
+
 TEST(SpatialOrder, IsTheSameForAnyNumberOfThreads) {
   const tbb::global_control parallelism(tbb::global_control::max_allowed_parallelism, 5);
   Cloud cloud = random_cloud(300000, 6);
