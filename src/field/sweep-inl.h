@@ -50,17 +50,16 @@ inline unsigned strips_of(std::uint64_t blocks) {
   return strips;
 }
 
-/// Blocks of which some row is set in `rows`, which has an element for each vector of columns.
-inline std::uint64_t blocks_of(const std::array<RowBits, sweep_vectors>& rows) {
-  constexpr unsigned rows_of_block = (1u << sweep_block_height) - 1;
-  std::uint64_t blocks = 0;
-  for (int b = 0; b < sweep_blocks; ++b) {
-    const int row = b / sweep_blocks_across * sweep_block_height;
-    const int h = b % sweep_blocks_across * sweep_block_width / num_lanes;
-    const bool any = (rows[static_cast<std::size_t>(h)] >> row & rows_of_block) != 0;
-    blocks |= static_cast<std::uint64_t>(any) << b;
+/// Bit s is set if some row of strip s is set in `rows`, which has an element for each vector of
+/// columns.
+inline unsigned strips_of(const std::array<RowBits, sweep_vectors>& rows) {
+  unsigned strips = 0;
+  for (int s = 0; s < sweep_strips; ++s) {
+    const unsigned of_column = rows[static_cast<std::size_t>(s % sweep_vectors)];
+    const bool any = (of_column >> (s / sweep_vectors * strip_height) & 0xfu) != 0;
+    strips |= static_cast<unsigned>(any) << s;
   }
-  return blocks;
+  return strips;
 }
 
 /// Bit i: entry `at` + i of the 32 may reach some of `rows`.
@@ -184,79 +183,89 @@ HWY_INLINE void rows_to_blocks(LaneTag d, Lanes* v) {
 #endif
 }
 
-/// Stores rows of a strip as blocks, whose first begins at `samples`: sets or, after the first
-/// round, adds. The rows are changed.
-template <int kRows>
-HWY_INLINE void store_rows(LaneTag d, bool first_round, Lanes (&rows)[kRows],
-                           std::size_t block_stride, float* samples) {
-  for (int j = 0; j < kRows;
-       j += sweep_block_height, samples += sweep_blocks_across * block_stride) {
+/// Turns rows of a strip into blocks and calls use(block, Lanes&) for each, blocks being counted
+/// from the first row's first.
+template <int kRows, class Use>
+HWY_INLINE void for_each_block(LaneTag d, Lanes (&rows)[kRows], Use&& use) {
+  for (int j = 0; j < kRows; j += sweep_block_height) {
     rows_to_blocks(d, rows + j);
-    for (std::size_t i = 0; i < sweep_block_height; ++i) {
-      float* const values = samples + i * block_stride;
-      const Lanes sum = rows[static_cast<std::size_t>(j) + i];
-      hn::Store(first_round ? sum : hn::Add(sum, hn::Load(d, values)), d, values);
+    for (int i = 0; i < sweep_block_height; ++i) {
+      use(j / sweep_block_height * sweep_blocks_across + i, rows[j + i]);
     }
   }
 }
 
+/// What sum_planes() found out.
+struct SweepCounts {
+  std::uint64_t visited = 0;  ///< entries, once for each strip
+  std::uint64_t seen = 0;     ///< bit b: some value of block b is above what may be seen
+};
+
 /// Sums a field on plane `k` of a strip; `samples` is the field's channel 0 of block 0.
 template <bool kGradients, bool kAbsolute>
-HWY_INLINE std::uint64_t sum_strip(LaneTag d, const SweepRound& round,
-                                   const FactorLists::List& list, int k, unsigned strip,
-                                   float visible_above, std::size_t block_stride, float* samples) {
+HWY_INLINE void sum_strip(LaneTag d, const SweepRound& round, const FactorLists::List& list, int k,
+                          unsigned strip, float visible_above, std::size_t block_stride,
+                          float* samples, SweepCounts& counts) {
   // So many that all sums stay in registers; without AVX-512 there are only 16.
   constexpr int rows_at_once = kGradients && HWY_TARGET > HWY_AVX3 ? 2 : strip_height;
   const int h = static_cast<int>(strip) % sweep_vectors;
   const int first_row = static_cast<int>(strip) / sweep_vectors * strip_height;
-  std::uint64_t visited = 0;
   for (int row = first_row; row < first_row + strip_height; row += rows_at_once) {
     RowSums<rows_at_once, kGradients, kAbsolute> sums;
     for (int j = 0; j < rows_at_once; ++j) {
       sums.value[j] = sums.absolute[j] = hn::Zero(d);
       for (auto& component : sums.gradient) component[j] = hn::Zero(d);
     }
-    visited += sum_rows(d, round, list, k, h, row, sums);
-    Lanes largest = sums.value[0];
-    for (int j = 1; j < rows_at_once; ++j) largest = hn::Max(largest, sums.value[j]);
-    const bool visible = kGradients && !hn::AllFalse(d, hn::Gt(largest, hn::Set(d, visible_above)));
-    const int block = row / sweep_block_height * sweep_blocks_across + h * sweep_block_height;
-    float* const values = samples + static_cast<std::size_t>(block) * block_stride;
-    store_rows(d, round.first, sums.value, block_stride, values);
-    if (!visible) continue;
-    for (int i = 0; kGradients && i < 3; ++i) {
-      store_rows(d, round.first, sums.gradient[i], block_stride, values + (1 + i) * num_lanes);
+    counts.visited += sum_rows(d, round, list, k, h, row, sums);
+    const int first_block = row / sweep_block_height * sweep_blocks_across + h * sweep_block_height;
+    float* const values = samples + static_cast<std::size_t>(first_block) * block_stride;
+    const auto store = [&](int channel, int block, Lanes& sum) HWY_ATTR {
+      float* const at =
+          values + static_cast<std::size_t>(block) * block_stride + channel * num_lanes;
+      if (!round.first) sum = hn::Add(sum, hn::Load(d, at));
+      hn::Store(sum, d, at);
+    };
+    std::uint64_t seen = 0;
+    for_each_block(d, sums.value, [&](int block, Lanes& sum) HWY_ATTR {
+      store(0, block, sum);
+      const bool any = !hn::AllFalse(d, hn::Gt(sum, hn::Set(d, visible_above)));
+      seen |= static_cast<std::uint64_t>(any) << block;
+    });
+    counts.seen |= seen << first_block;
+    if (!kGradients || seen == 0) continue;
+    for (int i = 0; i < 3; ++i) {
+      for_each_block(d, sums.gradient[i],
+                     [&](int block, Lanes& sum) HWY_ATTR { store(1 + i, block, sum); });
     }
     if constexpr (kAbsolute) {
-      store_rows(d, round.first, sums.absolute, block_stride, values + 4 * num_lanes);
+      for_each_block(d, sums.absolute,
+                     [&](int block, Lanes& sum) HWY_ATTR { store(4, block, sum); });
     }
   }
-  return visited;
 }
 
 /// Sets or, after the first round, adds to the samples on `num_planes` planes of the strips whose
-/// bits are set in `live_strips`. Samples of block b begin at b * block_stride, those of a plane
-/// are laid out as in a SampleBuffer. Where no value may be seen, gradients are left as they are.
-/// Returns kernel evaluations.
+/// bits are set in `strips`. Samples of block b begin at b * block_stride, those of a plane are
+/// laid out as in a SampleBuffer. Where no value may be seen, gradients are left as they are.
 template <bool kGradients, bool kAbsolute>
-HWY_NOINLINE std::uint64_t sum_planes(const SweepRound& round, const SampleLayout& layout,
-                                      unsigned live_strips, int num_planes,
-                                      std::size_t block_stride, float* samples) {
+HWY_NOINLINE SweepCounts sum_planes(const SweepRound& round, const SampleLayout& layout,
+                                    unsigned strips, int num_planes, std::size_t block_stride,
+                                    float* samples) {
   const LaneTag d;
   const auto num_fields = static_cast<std::size_t>(layout.num_fields);
   const std::size_t field_stride = layout.floats_per_sample() / num_fields;
   const FactorLists::List* list = round.lists.lists.data();
-  std::uint64_t visited = 0;
+  SweepCounts counts;
   for (int k = 0; k < num_planes; ++k) {
     for (std::size_t f = 0; f < num_fields; ++f, ++list, samples += field_stride) {
-      for (unsigned strips = live_strips; strips != 0; strips &= strips - 1) {
-        visited += sum_strip<kGradients, kAbsolute>(d, round, *list, k,
-                                                    static_cast<unsigned>(std::countr_zero(strips)),
-                                                    round.visible_above[f], block_stride, samples);
+      for (unsigned left = strips; left != 0; left &= left - 1) {
+        sum_strip<kGradients, kAbsolute>(d, round, *list, k,
+                                         static_cast<unsigned>(std::countr_zero(left)),
+                                         round.visible_above[f], block_stride, samples, counts);
       }
     }
   }
-  return visited * strip_height * static_cast<std::uint64_t>(num_lanes);
+  return counts;
 }
 
 }  // namespace HWY_NAMESPACE

@@ -239,25 +239,51 @@ struct VisibleSample {
   std::uint16_t field;
 };
 
-/// Those of at most 64 samples, begin to end, in the order of compositing. Returns how many; `out`
-/// has room for one more than all.
-HWY_INLINE std::size_t list_visible(LaneTag d, const std::vector<Classifier>& classifiers,
-                                    int begin, int end, const SlabSamples& samples,
-                                    VisibleSample* out) {
+/// The visible samples of the only field, one after the other.
+struct OneFieldSamples {
+  static constexpr bool one_field = true;
+  std::uint64_t bits;  ///< bit i: sample begin + i
+  int begin;
+
+  bool empty() const { return bits == 0; }
+  VisibleSample front() const {
+    return {static_cast<std::uint16_t>(begin + std::countr_zero(bits)), 0};
+  }
+  void pop() { bits &= bits - 1; }
+  /// No other field of the sample follows.
+  bool is_last_field(VisibleSample) const { return true; }
+};
+
+/// The visible samples of several fields, at each sample in their order.
+struct ManyFieldsSamples {
+  static constexpr bool one_field = false;
+  const VisibleSample *next, *end;
+
+  bool empty() const { return next == end; }
+  VisibleSample front() const { return *next; }
+  void pop() { ++next; }
+  bool is_last_field(VisibleSample one) const { return empty() || next->sample != one.sample; }
+};
+
+/// Lists at most 64 samples, begin to end; `out` has room for one more than all.
+HWY_INLINE ManyFieldsSamples list_visible(LaneTag d, const std::vector<Classifier>& classifiers,
+                                          int begin, int end, const SlabSamples& samples,
+                                          VisibleSample* out) {
   std::uint64_t visible[max_fields], any = 0;
   for (std::size_t f = 0; f < classifiers.size(); ++f) {
     visible[f] = visible_samples(d, classifiers[f], f, begin, end, samples);
     any |= visible[f];
   }
-  std::size_t count = 0;
+  VisibleSample* next = out;
   for (; any != 0; any &= any - 1) {
     const int i = std::countr_zero(any);
+    // Without branches, which nobody could predict.
     for (std::size_t f = 0; f < classifiers.size(); ++f) {
-      out[count] = {static_cast<std::uint16_t>(begin + i), static_cast<std::uint16_t>(f)};
-      count += visible[f] >> i & 1;
+      *next = {static_cast<std::uint16_t>(begin + i), static_cast<std::uint16_t>(f)};
+      next += visible[f] >> i & 1;
     }
   }
-  return count;
+  return {out, next};
 }
 
 /// What a field adds to rays at one sample.
@@ -326,51 +352,66 @@ struct BlockShading {
   }
 };
 
-/// Adds `count` samples. Each is a long chain of operations: two side by side keep the processor
-/// busy.
-template <bool kGradients, TableKind kKind>
+/// Adds the samples of a source. Each is a long chain of operations: two side by side keep the
+/// processor busy.
+template <bool kGradients, TableKind kKind, class Source>
 HWY_INLINE void add_samples(LaneTag d, const BlockShading& shading, const SlabSamples& samples,
-                            const VisibleSample* visible, std::size_t count, BlockRays& rays,
-                            BlockColors& colors) {
+                            Source source, BlockRays& rays, BlockColors& colors) {
   constexpr float no_sample = std::numeric_limits<float>::max();
   const Lanes termination = hn::Set(d, shading.constants.termination_opacity);
-  // After all fields of a sample rays that are opaque enough end.
-  const auto is_last_field = [&](std::size_t i) {
-    return i + 1 == count || visible[i + 1].sample != visible[i].sample;
+  const auto classify = [&](VisibleSample at, Contribution& out) HWY_ATTR {
+    const std::size_t field = Source::one_field ? 0 : at.field;
+    shading.classify_as<kGradients, kKind>(d, field, samples.at(at.sample, field), out);
   };
-  for (std::size_t i = 0; i < count; i += 2) {
-    const bool is_pair = i + 1 < count;
-    const VisibleSample one = visible[i], other = visible[is_pair ? i + 1 : i];
+  while (!source.empty()) {
+    const VisibleSample one = source.front();
+    source.pop();
+    const bool ends_sample = source.is_last_field(one), is_pair = !source.empty();
+    const VisibleSample other = is_pair ? source.front() : one;
+    if (is_pair) source.pop();
     const Lanes index = hn::Set(d, static_cast<float>(one.sample));
     const Lanes other_index = hn::Set(d, is_pair ? static_cast<float>(other.sample) : no_sample);
     const LaneMask live = rays.live_at(index), other_live = rays.live_at(other_index);
     Contribution a, b;
-    shading.classify_as<kGradients, kKind>(d, one.field, samples.at(one.sample, one.field), a);
-    shading.classify_as<kGradients, kKind>(d, other.field, samples.at(other.sample, other.field),
-                                           b);
+    classify(one, a);
+    classify(other, b);
     colors.composite(d, hn::IfThenElseZero(live, a.opacity), a.color);
     BlockColors both = colors;
     both.composite(d, hn::IfThenElseZero(other_live, b.opacity), b.color);
-    // Rays end seldom, so only if one may it is asked at which of the two samples.
+    // After all fields of a sample rays that are opaque enough end: seldom, so only if one may it
+    // is asked at which of the two samples.
     const LaneMask opaque = hn::Gt(both.alpha, termination);
     if (HWY_UNLIKELY(!hn::AllFalse(d, hn::And(hn::Or(live, other_live), opaque)))) {
       LaneMask goes_on = other_live;
-      if (is_last_field(i)) {
+      if (ends_sample) {
         const LaneMask ends = hn::And(live, hn::Gt(colors.alpha, termination));
         rays.end_at(ends, index);
         goes_on = hn::AndNot(ends, other_live);
       }
       both = colors;
       both.composite(d, hn::IfThenElseZero(goes_on, b.opacity), b.color);
-      if (is_pair && is_last_field(i + 1)) {
+      if (is_pair && source.is_last_field(other)) {
         rays.end_at(hn::And(goes_on, hn::Gt(both.alpha, termination)), other_index);
       }
+      const float next = source.empty() ? no_sample : static_cast<float>(source.front().sample);
+      if (hn::AllFalse(d, hn::Ge(rays.last, hn::Set(d, next)))) source = {};
     }
     colors = both;
-    if (HWY_UNLIKELY(rays.any_ended) && i + 2 < count) {
-      const Lanes next = hn::Set(d, static_cast<float>(visible[i + 2].sample));
-      if (hn::AllFalse(d, hn::Ge(rays.last, next))) return;
-    }
+  }
+}
+
+/// Adds those of at most 64 samples, begin to end, that may be seen.
+template <bool kGradients, TableKind kKind>
+HWY_INLINE void add_visible(LaneTag d, const BlockShading& shading, const SlabSamples& samples,
+                            int begin, int end, BlockRays& rays, BlockColors& colors) {
+  const std::vector<Classifier>& classifiers = shading.classifiers;
+  if (classifiers.size() == 1) {
+    const OneFieldSamples source{visible_samples(d, classifiers[0], 0, begin, end, samples), begin};
+    add_samples<kGradients, kKind>(d, shading, samples, source, rays, colors);
+  } else {
+    VisibleSample visible[64 * max_fields + 1];
+    const ManyFieldsSamples source = list_visible(d, classifiers, begin, end, samples, visible);
+    add_samples<kGradients, kKind>(d, shading, samples, source, rays, colors);
   }
 }
 
@@ -396,20 +437,18 @@ HWY_NOINLINE void integrate_slab(const std::vector<Classifier>& classifiers,
                   hn::Sub(hn::Load(d, rays.last), slab_first)};
   BlockColors colors{{hn::Load(d, rays.r), hn::Load(d, rays.g), hn::Load(d, rays.b)},
                      hn::Load(d, rays.a)};
-  VisibleSample visible[64 * max_fields + 1];
   const TableKind kind = kind_of(classifiers);
   int end = std::min(rays.end - slab.first, slab.count - 1);
   for (int part = std::max(rays.begin - slab.first, 0); part <= end; part += 64) {
-    const std::size_t count =
-        list_visible(d, classifiers, part, std::min(part + 63, end), samples, visible);
+    const int part_end = std::min(part + 63, end);
     if (kind == TableKind::one_segment) {
-      add_samples<kGradients, TableKind::one_segment>(d, shading, samples, visible, count, state,
+      add_visible<kGradients, TableKind::one_segment>(d, shading, samples, part, part_end, state,
                                                       colors);
     } else if (kind == TableKind::one_vector) {
-      add_samples<kGradients, TableKind::one_vector>(d, shading, samples, visible, count, state,
+      add_visible<kGradients, TableKind::one_vector>(d, shading, samples, part, part_end, state,
                                                      colors);
     } else {
-      add_samples<kGradients, TableKind::many>(d, shading, samples, visible, count, state, colors);
+      add_visible<kGradients, TableKind::many>(d, shading, samples, part, part_end, state, colors);
     }
     if (state.any_ended) {
       const int last_live = static_cast<int>(hn::GetLane(hn::MaxOfLanes(d, state.last)));

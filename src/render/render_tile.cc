@@ -157,7 +157,7 @@ struct SweepMemory {
 };
 
 /// Pass 1 of the sweep for a tile in a slab, with the channels of the frame. Blocks that show
-/// nothing, whose samples are not set, lose their bits in `live`. Returns kernel evaluations.
+/// nothing lose their bits in `live`. Returns kernel evaluations.
 template <bool kGradients, bool kAbsolute>
 std::uint64_t sample_tile(const FrameContext& context, const SamplingConstants& constants,
                           const TileSamples& placed, const Slab& slab, std::uint64_t& live,
@@ -166,22 +166,26 @@ std::uint64_t sample_tile(const FrameContext& context, const SamplingConstants& 
   const std::size_t block_stride =
       static_cast<std::size_t>(slab.count) * layout.floats_per_sample();
   memory.samples.resize(sweep_blocks * block_stride);
-  std::uint64_t evaluations = 0;
+  SweepCounts counts;
+  std::uint64_t visited = 0;
   std::size_t listed = 0;
   do {
     const bool first = listed == 0;
     listed =
         list_factors<kGradients>(*context.kernels, constants, memory.gathered, memory.tile_kernels,
                                  placed, slab.count, listed, memory.lists);
-    // Only where all kernels are there at once it is known what may be seen.
+    // What may be seen is known only where all kernels are there at once.
     const bool only = first && listed == memory.tile_kernels.size;
-    if (only && zero_is_transparent(context)) live &= blocks_of(memory.lists.any_rows);
+    unsigned strips = strips_of(live);
+    if (only && zero_is_transparent(context)) strips &= strips_of(memory.lists.any_rows);
     const SweepRound round{memory.lists, placed, only ? memory.visible_above : memory.everything,
                            first};
-    evaluations += sum_planes<kGradients, kAbsolute>(round, layout, strips_of(live), slab.count,
-                                                     block_stride, memory.samples.data());
+    counts = sum_planes<kGradients, kAbsolute>(round, layout, strips, slab.count, block_stride,
+                                               memory.samples.data());
+    visited += counts.visited;
   } while (listed != memory.tile_kernels.size);
-  return evaluations;
+  live &= counts.seen;
+  return visited * strip_height * static_cast<std::uint64_t>(num_lanes);
 }
 
 /// Samples and integrates a tile in a slab. Returns kernel evaluations.
