@@ -13,6 +13,7 @@
 
 #include "core/error.h"
 #include "motes/commands.h"
+#include "motes/interrupt.h"
 
 namespace {
 
@@ -151,6 +152,7 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  motes::leave_when_interrupted();
   try {
     std::vector<char*> arguments = with_help(argc, argv);
     return run(static_cast<int>(arguments.size()), arguments.data());

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/temporary_files.h"
 
 namespace motes {
 
@@ -55,19 +56,27 @@ AtomicFile::AtomicFile(const std::filesystem::path& path) : path_(path) {
     descriptor_ = open(target_.c_str(), O_WRONLY | O_CLOEXEC);
   } else {
     fs::path name = temporary_name(target_);
+    TemporaryFiles::of_program().add(name);
     descriptor_ = open_nameless(target_.parent_path());
     nameless_ = descriptor_ >= 0;
     if (!nameless_) {
       descriptor_ = open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     }
-    if (descriptor_ >= 0) temporary_ = std::move(name);
+    const int error_number = errno;
+    if (descriptor_ < 0) {
+      TemporaryFiles::of_program().remove(name);
+      fail(error_number);
+    }
+    temporary_ = std::move(name);
   }
   if (descriptor_ < 0) fail(errno);
 }
 
 AtomicFile::~AtomicFile() {
   if (descriptor_ >= 0) close(descriptor_);
-  if (!temporary_.empty()) unlink(temporary_.c_str());
+  if (temporary_.empty()) return;
+  unlink(temporary_.c_str());
+  TemporaryFiles::of_program().remove(temporary_);
 }
 
 void AtomicFile::write(std::string_view bytes) {
@@ -91,6 +100,7 @@ void AtomicFile::commit() {
   if (close(std::exchange(descriptor_, -1)) != 0) fail(errno);
   if (temporary_.empty()) return;
   if (rename(temporary_.c_str(), target_.c_str()) != 0) fail(errno);
+  TemporaryFiles::of_program().remove(temporary_);
   temporary_.clear();
 }
 

@@ -195,6 +195,19 @@ TEST_F(CommandLine, AKilledProgramLeavesNoFile) {
   EXPECT_EQ(workspace_.num_files(), before);
 }
 
+TEST_F(CommandLine, AnInterruptedProgramSaysSoAndLeavesNoFile) {
+  const std::size_t before = workspace_.num_files();
+  // So many samples that it is still busy when the signal comes. timeout repeats its signal as its
+  // status: 128 + SIGINT.
+  const Outcome outcome =
+      run(fmt::format("--version >version; timeout --preserve-status -s INT 1 '{}' render a.xyz "
+                      "-o a.png --size 4000x4000 --step-size 0.0001",
+                      MOTES_PROGRAM));
+  EXPECT_EQ(outcome.status, 130);
+  EXPECT_EQ(outcome.err, "motes: interrupted\n");
+  EXPECT_EQ(workspace_.num_files(), before + 1);
+}
+
 TEST_F(CommandLine, RenderWritesEveryFormat) {
   succeed("render a.xyz -o a.png --size 16x8");
   EXPECT_THAT(workspace_.read("a.png"), StartsWith("\x89PNG"));
