@@ -104,8 +104,8 @@ HWY_INLINE Lanes add_inside(LaneTag, LaneMask inside, Lanes v, Lanes sum) {
 struct SweepRound {
   const FactorLists& lists;
   const TileSamples& tile;
-  /// A field's gradient is kept only where some value of a strip is above this.
-  const float* visible_above;
+  /// Of each field: gradients are kept only where some value of a strip may be seen.
+  const Visibility* visibility;
   bool first;  ///< the samples hold nothing yet
 };
 
@@ -195,77 +195,84 @@ HWY_INLINE void for_each_block(LaneTag d, Lanes (&rows)[kRows], Use&& use) {
   }
 }
 
-/// What sum_planes() found out.
-struct SweepCounts {
-  std::uint64_t visited = 0;  ///< entries, once for each strip
-  std::uint64_t seen = 0;     ///< bit b: some value of block b is above what may be seen
+/// Where sums go: blocks of a tile, one after the other.
+struct BlockSamples {
+  std::size_t stride;      ///< floats from a block to the next
+  float* samples;          ///< of block 0, laid out as in a SampleBuffer
+  std::uint64_t* visible;  ///< [block][field]: bit k is set if something may be seen on plane k
 };
 
-/// Sums a field on plane `k` of a strip; `samples` is the field's channel 0 of block 0.
+/// Sums field `f` on plane `k` of a strip; `samples` is the field's channel 0 in block 0. Returns
+/// how many entries.
 template <bool kGradients, bool kAbsolute>
-HWY_INLINE void sum_strip(LaneTag d, const SweepRound& round, const FactorLists::List& list, int k,
-                          unsigned strip, float visible_above, std::size_t block_stride,
-                          float* samples, SweepCounts& counts) {
+HWY_INLINE std::uint64_t sum_strip(LaneTag d, const SweepRound& round,
+                                   const FactorLists::List& list, int k, std::size_t f,
+                                   unsigned strip, const BlockSamples& blocks,
+                                   std::size_t num_fields, float* samples) {
   // So many that all sums stay in registers; without AVX-512 there are only 16.
   constexpr int rows_at_once = kGradients && HWY_TARGET > HWY_AVX3 ? 2 : strip_height;
   const int h = static_cast<int>(strip) % sweep_vectors;
   const int first_row = static_cast<int>(strip) / sweep_vectors * strip_height;
+  std::uint64_t visited = 0;
   for (int row = first_row; row < first_row + strip_height; row += rows_at_once) {
     RowSums<rows_at_once, kGradients, kAbsolute> sums;
     for (int j = 0; j < rows_at_once; ++j) {
       sums.value[j] = sums.absolute[j] = hn::Zero(d);
       for (auto& component : sums.gradient) component[j] = hn::Zero(d);
     }
-    counts.visited += sum_rows(d, round, list, k, h, row, sums);
+    const std::uint64_t entries = sum_rows(d, round, list, k, h, row, sums);
+    if (entries == 0 && !round.visibility[f].shows_zero()) continue;
+    visited += entries;
     const int first_block = row / sweep_block_height * sweep_blocks_across + h * sweep_block_height;
-    float* const values = samples + static_cast<std::size_t>(first_block) * block_stride;
-    const auto store = [&](int channel, int block, Lanes& sum) HWY_ATTR {
-      float* const at =
-          values + static_cast<std::size_t>(block) * block_stride + channel * num_lanes;
+    const auto add_before = [&](int channel, int block, Lanes& sum) HWY_ATTR {
+      float* const at = samples + static_cast<std::size_t>(first_block + block) * blocks.stride +
+                        channel * num_lanes;
       if (!round.first) sum = hn::Add(sum, hn::Load(d, at));
       hn::Store(sum, d, at);
     };
-    std::uint64_t seen = 0;
+    bool any_seen = false;
     for_each_block(d, sums.value, [&](int block, Lanes& sum) HWY_ATTR {
-      store(0, block, sum);
-      const bool any = !hn::AllFalse(d, hn::Gt(sum, hn::Set(d, visible_above)));
-      seen |= static_cast<std::uint64_t>(any) << block;
+      add_before(0, block, sum);
+      const bool seen = may_be_seen(d, sum, round.visibility[f]);
+      blocks.visible[static_cast<std::size_t>(first_block + block) * num_fields + f] |=
+          std::uint64_t{seen} << k;
+      any_seen = any_seen || seen;
     });
-    counts.seen |= seen << first_block;
-    if (!kGradients || seen == 0) continue;
+    if (!kGradients || !any_seen) continue;
     for (int i = 0; i < 3; ++i) {
       for_each_block(d, sums.gradient[i],
-                     [&](int block, Lanes& sum) HWY_ATTR { store(1 + i, block, sum); });
+                     [&](int block, Lanes& sum) HWY_ATTR { add_before(1 + i, block, sum); });
     }
     if constexpr (kAbsolute) {
       for_each_block(d, sums.absolute,
-                     [&](int block, Lanes& sum) HWY_ATTR { store(4, block, sum); });
+                     [&](int block, Lanes& sum) HWY_ATTR { add_before(4, block, sum); });
     }
   }
+  return visited;
 }
 
 /// Sets or, after the first round, adds to the samples on `num_planes` planes of the strips whose
-/// bits are set in `strips`. Samples of block b begin at b * block_stride, those of a plane are
-/// laid out as in a SampleBuffer. Where no value may be seen, gradients are left as they are.
+/// bits are set in `strips`, and sets bits of `blocks.visible`. Where nothing may be seen,
+/// gradients are left as they are. Returns kernel evaluations.
 template <bool kGradients, bool kAbsolute>
-HWY_NOINLINE SweepCounts sum_planes(const SweepRound& round, const SampleLayout& layout,
-                                    unsigned strips, int num_planes, std::size_t block_stride,
-                                    float* samples) {
+HWY_NOINLINE std::uint64_t sum_planes(const SweepRound& round, const SampleLayout& layout,
+                                      unsigned strips, int num_planes, const BlockSamples& blocks) {
   const LaneTag d;
   const auto num_fields = static_cast<std::size_t>(layout.num_fields);
   const std::size_t field_stride = layout.floats_per_sample() / num_fields;
   const FactorLists::List* list = round.lists.lists.data();
-  SweepCounts counts;
+  float* samples = blocks.samples;
+  std::uint64_t visited = 0;
   for (int k = 0; k < num_planes; ++k) {
     for (std::size_t f = 0; f < num_fields; ++f, ++list, samples += field_stride) {
       for (unsigned left = strips; left != 0; left &= left - 1) {
-        sum_strip<kGradients, kAbsolute>(d, round, *list, k,
-                                         static_cast<unsigned>(std::countr_zero(left)),
-                                         round.visible_above[f], block_stride, samples, counts);
+        visited += sum_strip<kGradients, kAbsolute>(d, round, *list, k, f,
+                                                    static_cast<unsigned>(std::countr_zero(left)),
+                                                    blocks, num_fields, samples);
       }
     }
   }
-  return counts;
+  return visited * strip_height * static_cast<std::uint64_t>(num_lanes);
 }
 
 }  // namespace HWY_NAMESPACE

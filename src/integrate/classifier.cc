@@ -5,8 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "samples/samples.h"
-
 namespace motes {
 namespace {
 
@@ -69,15 +67,16 @@ Classifier compile_transfer_function(const TransferFunction& function, double va
   const auto visible =
       std::find_if(knots.begin(), knots.end(), [](const Knot& k) { return k.values[3] > 0; });
   if (visible == knots.begin()) {
-    c.transparent_below = -infinity;
+    c.visibility.above = -infinity;
   } else if (visible == knots.end()) {
-    c.transparent_below = infinity;
+    c.visibility.above = infinity;
   } else {
     const double argument = (visible - 1)->argument;
-    c.transparent_below =
+    c.visibility.above =
         static_cast<float>(function.log_scale ? std::pow(10, argument) * value_scale : argument);
   }
-  c.zero_is_transparent = extinction_of_zero(knots, function.log_scale) == 0;
+  const bool zero_is_transparent = extinction_of_zero(knots, function.log_scale) == 0;
+  c.visibility.hidden = zero_is_transparent ? 0 : std::numeric_limits<float>::infinity();
   return c;
 }
 

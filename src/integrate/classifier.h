@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "core/aligned.h"
+#include "samples/samples.h"
 #include "scene/transfer_function.h"
 
 namespace motes {
@@ -23,10 +24,8 @@ struct Classifier {
   AlignedVector<float> table;
   const float* row(int i) const { return table.data() + static_cast<std::size_t>(i) * row_size; }
 
-  /// Buffer's values up to this have no extinction (-infinity: none such).
-  float transparent_below = 0;
-  float max_depth = 0;               ///< largest extinction times step
-  bool zero_is_transparent = false;  ///< a sample that no kernel reaches shows nothing
+  Visibility visibility{};  ///< buffer's values that have extinction
+  float max_depth = 0;      ///< largest extinction times step
 };
 
 /// `value_scale`: buffer's value over field's value; `step_size`: file's lengths.

@@ -120,7 +120,7 @@ HWY_INLINE Lanes table_value(LaneTag d, const Classifier& c, int i, const TableP
 }
 
 /// The classifier's argument for the buffer's values. Finite also where there is no logarithm, so
-/// that it lies above a transparent_below of -infinity and a flat segment makes no NaN of it.
+/// that it lies above a Visibility::above of -infinity and a flat segment makes no NaN of it.
 HWY_INLINE Lanes argument_of(LaneTag d, const Classifier& c, Lanes value) {
   if (!c.log_scale) return value;
   const Lanes tiny = hn::Set(d, std::numeric_limits<float>::min());
@@ -211,27 +211,8 @@ struct SlabSamples {
   }
 };
 
-/// Bit i: some ray may see field `f` at sample begin + i. At most 64 samples, begin to end.
-HWY_INLINE std::uint64_t visible_samples(LaneTag d, const Classifier& classifier, std::size_t f,
-                                         int begin, int end, const SlabSamples& samples) {
-  const Lanes clear = hn::Set(d, classifier.transparent_below);
-  const auto look = [&](auto&& is_seen) HWY_ATTR {
-    const float* values = samples.at(begin, f);
-    std::uint64_t visible = 0;
-    for (int i = 0; i <= end - begin; ++i, values += samples.stride) {
-      const bool any = !hn::AllFalse(d, is_seen(hn::Load(d, values)));
-      visible |= static_cast<std::uint64_t>(any) << i;
-    }
-    return visible;
-  };
-  // Only where some negative value shows, empty samples, many as they are, need a test of their
-  // own.
-  if (classifier.zero_is_transparent && classifier.transparent_below < 0) {
-    return look([&](Lanes value)
-                    HWY_ATTR { return hn::And(hn::Gt(value, clear), hn::Ne(value, hn::Zero(d))); });
-  }
-  return look([&](Lanes value) HWY_ATTR { return hn::Gt(value, clear); });
-}
+/// Samples of a slab, at most: a bit each.
+inline constexpr int max_slab = 64;
 
 /// A field at a sample that some ray may see.
 struct VisibleSample {
@@ -242,13 +223,10 @@ struct VisibleSample {
 /// The visible samples of the only field, one after the other.
 struct OneFieldSamples {
   static constexpr bool one_field = true;
-  std::uint64_t bits;  ///< bit i: sample begin + i
-  int begin;
+  std::uint64_t bits;  ///< bit i: sample i
 
   bool empty() const { return bits == 0; }
-  VisibleSample front() const {
-    return {static_cast<std::uint16_t>(begin + std::countr_zero(bits)), 0};
-  }
+  VisibleSample front() const { return {static_cast<std::uint16_t>(std::countr_zero(bits)), 0}; }
   void pop() { bits &= bits - 1; }
   /// No other field of the sample follows.
   bool is_last_field(VisibleSample) const { return true; }
@@ -265,21 +243,18 @@ struct ManyFieldsSamples {
   bool is_last_field(VisibleSample one) const { return empty() || next->sample != one.sample; }
 };
 
-/// Lists at most 64 samples, begin to end; `out` has room for one more than all.
-HWY_INLINE ManyFieldsSamples list_visible(LaneTag d, const std::vector<Classifier>& classifiers,
-                                          int begin, int end, const SlabSamples& samples,
-                                          VisibleSample* out) {
-  std::uint64_t visible[max_fields], any = 0;
-  for (std::size_t f = 0; f < classifiers.size(); ++f) {
-    visible[f] = visible_samples(d, classifiers[f], f, begin, end, samples);
-    any |= visible[f];
-  }
+/// Lists the samples whose bits are set, bit i of visible[f] being sample i of field f; `out` has
+/// room for one more than all.
+inline ManyFieldsSamples list_visible(std::size_t num_fields, const std::uint64_t* visible,
+                                      VisibleSample* out) {
+  std::uint64_t any = 0;
+  for (std::size_t f = 0; f < num_fields; ++f) any |= visible[f];
   VisibleSample* next = out;
   for (; any != 0; any &= any - 1) {
     const int i = std::countr_zero(any);
     // Without branches, which nobody could predict.
-    for (std::size_t f = 0; f < classifiers.size(); ++f) {
-      *next = {static_cast<std::uint16_t>(begin + i), static_cast<std::uint16_t>(f)};
+    for (std::size_t f = 0; f < num_fields; ++f) {
+      *next = {static_cast<std::uint16_t>(i), static_cast<std::uint16_t>(f)};
       next += visible[f] >> i & 1;
     }
   }
@@ -400,28 +375,28 @@ HWY_INLINE void add_samples(LaneTag d, const BlockShading& shading, const SlabSa
   }
 }
 
-/// Adds those of at most 64 samples, begin to end, that may be seen.
+/// Adds the samples whose bits are set, as list_visible() takes them.
 template <bool kGradients, TableKind kKind>
 HWY_INLINE void add_visible(LaneTag d, const BlockShading& shading, const SlabSamples& samples,
-                            int begin, int end, BlockRays& rays, BlockColors& colors) {
-  const std::vector<Classifier>& classifiers = shading.classifiers;
-  if (classifiers.size() == 1) {
-    const OneFieldSamples source{visible_samples(d, classifiers[0], 0, begin, end, samples), begin};
-    add_samples<kGradients, kKind>(d, shading, samples, source, rays, colors);
+                            const std::uint64_t* visible, BlockRays& rays, BlockColors& colors) {
+  const std::size_t num_fields = shading.classifiers.size();
+  if (num_fields == 1) {
+    add_samples<kGradients, kKind>(d, shading, samples, OneFieldSamples{visible[0]}, rays, colors);
   } else {
-    VisibleSample visible[64 * max_fields + 1];
-    const ManyFieldsSamples source = list_visible(d, classifiers, begin, end, samples, visible);
-    add_samples<kGradients, kKind>(d, shading, samples, source, rays, colors);
+    VisibleSample list[max_slab * max_fields + 1];
+    add_samples<kGradients, kKind>(d, shading, samples, list_visible(num_fields, visible, list),
+                                   rays, colors);
   }
 }
 
-/// Composites the samples of `slab` (field 0, channel 0 of its first at `first_sample`) into the
-/// rays' colours. A ray that reaches the termination opacity ends. Hot: nothing is checked.
+/// Composites the samples of `slab`, at most max_slab (field 0, channel 0 of its first at
+/// `first_sample`), into the rays' colours. Bit i of visible[f]: field f may be seen at sample i. A
+/// ray that reaches the termination opacity ends. Hot: nothing is checked.
 template <bool kGradients>
 HWY_NOINLINE void integrate_slab(const std::vector<Classifier>& classifiers,
                                  const ShadingConstants& constants, const Slab& slab,
                                  const SampleLayout& layout, const float* first_sample,
-                                 RayState& rays) {
+                                 const std::uint64_t* visible, RayState& rays) {
   const LaneTag d;
   const SlabSamples samples{first_sample, layout.floats_per_sample(),
                             static_cast<std::size_t>(layout.channels() * layout.lanes)};
@@ -438,23 +413,15 @@ HWY_NOINLINE void integrate_slab(const std::vector<Classifier>& classifiers,
   BlockColors colors{{hn::Load(d, rays.r), hn::Load(d, rays.g), hn::Load(d, rays.b)},
                      hn::Load(d, rays.a)};
   const TableKind kind = kind_of(classifiers);
-  int end = std::min(rays.end - slab.first, slab.count - 1);
-  for (int part = std::max(rays.begin - slab.first, 0); part <= end; part += 64) {
-    const int part_end = std::min(part + 63, end);
-    if (kind == TableKind::one_segment) {
-      add_visible<kGradients, TableKind::one_segment>(d, shading, samples, part, part_end, state,
-                                                      colors);
-    } else if (kind == TableKind::one_vector) {
-      add_visible<kGradients, TableKind::one_vector>(d, shading, samples, part, part_end, state,
-                                                     colors);
-    } else {
-      add_visible<kGradients, TableKind::many>(d, shading, samples, part, part_end, state, colors);
-    }
-    if (state.any_ended) {
-      const int last_live = static_cast<int>(hn::GetLane(hn::MaxOfLanes(d, state.last)));
-      rays.end = slab.first + last_live;
-      end = std::min(end, last_live);
-    }
+  if (kind == TableKind::one_segment) {
+    add_visible<kGradients, TableKind::one_segment>(d, shading, samples, visible, state, colors);
+  } else if (kind == TableKind::one_vector) {
+    add_visible<kGradients, TableKind::one_vector>(d, shading, samples, visible, state, colors);
+  } else {
+    add_visible<kGradients, TableKind::many>(d, shading, samples, visible, state, colors);
+  }
+  if (state.any_ended) {
+    rays.end = slab.first + static_cast<int>(hn::GetLane(hn::MaxOfLanes(d, state.last)));
   }
   hn::Store(colors.color[0], d, rays.r);
   hn::Store(colors.color[1], d, rays.g);
@@ -465,11 +432,30 @@ HWY_NOINLINE void integrate_slab(const std::vector<Classifier>& classifiers,
 
 inline void integrate(const std::vector<Classifier>& classifiers, const ShadingConstants& shading,
                       const Slab& slab, const SampleLayout& layout, const float* first_sample,
-                      RayState& rays) {
+                      const std::uint64_t* visible, RayState& rays) {
   if (layout.gradients) {
-    integrate_slab<true>(classifiers, shading, slab, layout, first_sample, rays);
+    integrate_slab<true>(classifiers, shading, slab, layout, first_sample, visible, rays);
   } else {
-    integrate_slab<false>(classifiers, shading, slab, layout, first_sample, rays);
+    integrate_slab<false>(classifiers, shading, slab, layout, first_sample, visible, rays);
+  }
+}
+
+/// The same for any number of samples of which it is not known yet which may be seen.
+inline void integrate_buffer(const std::vector<Classifier>& classifiers,
+                             const ShadingConstants& shading, const Slab& slab,
+                             SampleBuffer& buffer, RayState& rays) {
+  const LaneTag d;
+  for (int begin = 0; begin < slab.count && slab.first + begin <= rays.end; begin += max_slab) {
+    const int count = std::min(slab.count - begin, max_slab);
+    std::uint64_t visible[max_fields] = {};
+    for (std::size_t f = 0; f < classifiers.size(); ++f) {
+      for (int i = 0; i < count; ++i) {
+        const Lanes values = hn::Load(d, buffer.at(begin + i, static_cast<int>(f)));
+        visible[f] |= std::uint64_t{may_be_seen(d, values, classifiers[f].visibility)} << i;
+      }
+    }
+    integrate(classifiers, shading, {slab.first + begin, count}, buffer.layout(),
+              buffer.at(begin, 0), visible, rays);
   }
 }
 

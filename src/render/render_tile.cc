@@ -75,7 +75,7 @@ std::uint64_t render_packet(const FrameContext& context, const SamplingConstants
     const Slab slab{k, std::min(rays.end - k + 1, context.samples_per_pass)};
     buffer.reserve(slab.count);
     evaluations += sample_field(context, constants, packet, slab, buffer);
-    integrate(context.classifiers, context.shading, slab, buffer.layout(), buffer.at(0, 0), rays);
+    integrate_buffer(context.classifiers, context.shading, slab, buffer, rays);
     clear_touched(buffer);
   }
   return evaluations;
@@ -143,7 +143,7 @@ std::uint64_t live_blocks(const SweepTile& tile, const Slab& slab) {
 /// Samples that no kernel reaches show nothing.
 bool zero_is_transparent(const FrameContext& context) {
   return std::all_of(context.classifiers.begin(), context.classifiers.end(),
-                     [](const Classifier& c) { return c.zero_is_transparent; });
+                     [](const Classifier& c) { return !c.visibility.shows_zero(); });
 }
 
 /// What the sweep of an area works with: a few MB, kept by each thread.
@@ -151,23 +151,19 @@ struct SweepMemory {
   GatheredKernels gathered;
   TileKernels tile_kernels;
   FactorLists lists;
-  AlignedVector<float> samples;  ///< of the blocks of a tile, one after the other
-  /// Values of each field up to which nothing is seen; and where nothing is ruled out.
-  float visible_above[max_fields], everything[max_fields];
+  AlignedVector<float> samples;        ///< of the blocks of a tile, one after the other
+  std::vector<std::uint64_t> visible;  ///< [block][field], as in BlockSamples
+  /// Of each field; and where nothing is ruled out.
+  Visibility visibility[max_fields], everything[max_fields];
 };
 
-/// Pass 1 of the sweep for a tile in a slab, with the channels of the frame. Blocks that show
-/// nothing lose their bits in `live`. Returns kernel evaluations.
+/// Pass 1 of the sweep for the blocks of a tile in a slab, with the channels of the frame. Returns
+/// kernel evaluations.
 template <bool kGradients, bool kAbsolute>
 std::uint64_t sample_tile(const FrameContext& context, const SamplingConstants& constants,
-                          const TileSamples& placed, const Slab& slab, std::uint64_t& live,
-                          SweepMemory& memory) {
-  const SampleLayout layout = make_layout(context);
-  const std::size_t block_stride =
-      static_cast<std::size_t>(slab.count) * layout.floats_per_sample();
-  memory.samples.resize(sweep_blocks * block_stride);
-  SweepCounts counts;
-  std::uint64_t visited = 0;
+                          const TileSamples& placed, const Slab& slab, std::uint64_t live,
+                          const BlockSamples& blocks, SweepMemory& memory) {
+  std::uint64_t evaluations = 0;
   std::size_t listed = 0;
   do {
     const bool first = listed == 0;
@@ -178,33 +174,37 @@ std::uint64_t sample_tile(const FrameContext& context, const SamplingConstants& 
     const bool only = first && listed == memory.tile_kernels.size;
     unsigned strips = strips_of(live);
     if (only && zero_is_transparent(context)) strips &= strips_of(memory.lists.any_rows);
-    const SweepRound round{memory.lists, placed, only ? memory.visible_above : memory.everything,
+    const SweepRound round{memory.lists, placed, only ? memory.visibility : memory.everything,
                            first};
-    counts = sum_planes<kGradients, kAbsolute>(round, layout, strips, slab.count, block_stride,
-                                               memory.samples.data());
-    visited += counts.visited;
+    evaluations +=
+        sum_planes<kGradients, kAbsolute>(round, make_layout(context), strips, slab.count, blocks);
   } while (listed != memory.tile_kernels.size);
-  live &= counts.seen;
-  return visited * strip_height * static_cast<std::uint64_t>(num_lanes);
+  return evaluations;
 }
 
 /// Samples and integrates a tile in a slab. Returns kernel evaluations.
 std::uint64_t sweep_slab(const FrameContext& context, const SamplingConstants& constants,
                          const SlabFrame& frame, const Slab& slab, SweepMemory& memory,
                          SweepTile& tile) {
+  const SampleLayout layout = make_layout(context);
+  const auto num_fields = static_cast<std::size_t>(layout.num_fields);
+  const std::size_t stride = static_cast<std::size_t>(slab.count) * layout.floats_per_sample();
+  memory.samples.resize(sweep_blocks * stride);
+  memory.visible.assign(sweep_blocks * num_fields, 0);
+  const BlockSamples blocks{stride, memory.samples.data(), memory.visible.data()};
   const TileSamples placed = place_samples(tile.bounds, frame);
-  std::uint64_t live = live_blocks(tile, slab);
   const auto sample = !context.gradients ? &sample_tile<false, false>
                       : context.absolute ? &sample_tile<true, true>
                                          : &sample_tile<true, false>;
-  const std::uint64_t evaluations = sample(context, constants, placed, slab, live, memory);
-  const SampleLayout layout = make_layout(context);
-  const std::size_t block_stride =
-      static_cast<std::size_t>(slab.count) * layout.floats_per_sample();
-  for (; live != 0; live &= live - 1) {
-    const auto b = static_cast<std::size_t>(std::countr_zero(live));
-    integrate(context.classifiers, context.shading, slab, layout,
-              memory.samples.data() + b * block_stride, tile.blocks[b]);
+  const std::uint64_t live = live_blocks(tile, slab);
+  const std::uint64_t evaluations = sample(context, constants, placed, slab, live, blocks, memory);
+  for (std::uint64_t left = live; left != 0; left &= left - 1) {
+    const auto b = static_cast<std::size_t>(std::countr_zero(left));
+    const std::uint64_t* const visible = blocks.visible + b * num_fields;
+    if (std::all_of(visible, visible + num_fields, [](std::uint64_t v) { return v == 0; }))
+      continue;
+    integrate(context.classifiers, context.shading, slab, layout, blocks.samples + b * stride,
+              visible, tile.blocks[b]);
     tile.end[b] = tile.blocks[b].end;
   }
   return evaluations;
@@ -233,9 +233,11 @@ TileCounts render_sweep(const FrameContext& context, const Tile& area, Framebuff
                       tiles_along(area.height) * sweep_tile);
   const int planes = std::min(context.samples_per_pass, max_sweep_planes);
   static thread_local SweepMemory memory;
-  std::fill_n(memory.everything, max_fields, -std::numeric_limits<float>::infinity());
-  std::transform(context.classifiers.begin(), context.classifiers.end(), memory.visible_above,
-                 [](const Classifier& c) { return c.transparent_below; });
+  std::fill_n(
+      memory.everything, max_fields,
+      Visibility{-std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity()});
+  std::transform(context.classifiers.begin(), context.classifiers.end(), memory.visibility,
+                 [](const Classifier& c) { return c.visibility; });
   TileCounts counts;
   while (begin <= end) {
     const Slab slab{begin, std::min(end - begin + 1, planes)};

@@ -36,6 +36,12 @@ HWY_INLINE unsigned mask_bits(D d, hn::Mask<D> mask) {
   return (bytes[0] | static_cast<unsigned>(bytes[1]) << 8) & ((1u << hn::Lanes(d)) - 1);
 }
 
+/// Something may be seen at one of a field's values.
+HWY_INLINE bool may_be_seen(LaneTag d, Lanes values, const Visibility& visibility) {
+  return !hn::AllFalse(d, hn::And(hn::Gt(values, hn::Set(d, visibility.above)),
+                                  hn::Ne(values, hn::Set(d, visibility.hidden))));
+}
+
 /// Sets what was touched of the buffer back to zero.
 inline void clear_touched(SampleBuffer& buffer) {
   const LaneTag d;

@@ -70,6 +70,13 @@ struct SampleLayout {
   }
 };
 
+/// Values of a field at which something may be seen: those above `above`, but for `hidden`.
+struct Visibility {
+  float above;   ///< -infinity: all
+  float hidden;  ///< 0 or, if zero shows something, infinity
+  bool shows_zero() const { return 0 > above && hidden != 0; }
+};
+
 /// Samples of a packet, one after the other: [sample][field][channel][lane].
 class SampleBuffer {
  public:

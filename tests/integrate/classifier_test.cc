@@ -11,26 +11,26 @@ constexpr float infinity = std::numeric_limits<float>::infinity();
 
 TEST(Classifier, KnowsWhereNothingIsSeen) {
   const TransferFunction late{{{0, {}, 0}, {1, {}, 0}, {2, {}, 3}}, false};
-  EXPECT_EQ(compile_transfer_function(late, 1, 0.5).transparent_below, 1);
-  EXPECT_TRUE(compile_transfer_function(late, 1, 0.5).zero_is_transparent);
+  EXPECT_EQ(compile_transfer_function(late, 1, 0.5).visibility.above, 1);
+  EXPECT_FALSE(compile_transfer_function(late, 1, 0.5).visibility.shows_zero());
 
   const TransferFunction always{{{0, {}, 0.5}, {1, {}, 0}}, false};
-  EXPECT_EQ(compile_transfer_function(always, 1, 0.5).transparent_below, -infinity);
-  EXPECT_FALSE(compile_transfer_function(always, 1, 0.5).zero_is_transparent);
+  EXPECT_EQ(compile_transfer_function(always, 1, 0.5).visibility.above, -infinity);
+  EXPECT_TRUE(compile_transfer_function(always, 1, 0.5).visibility.shows_zero());
 
   const TransferFunction never{{{0, {}, 0}, {1, {}, 0}}, false};
-  EXPECT_EQ(compile_transfer_function(never, 1, 0.5).transparent_below, infinity);
+  EXPECT_EQ(compile_transfer_function(never, 1, 0.5).visibility.above, infinity);
 }
 
 TEST(Classifier, FindsTheExtinctionOfEmptySpaceBetweenPoints) {
   // A diverging map: opaque at both ends, clear in the middle, which is zero.
   const TransferFunction clear{{{-1, {}, 2}, {-0.1, {}, 0}, {0.1, {}, 0}, {1, {}, 2}}, false};
-  EXPECT_TRUE(compile_transfer_function(clear, 1, 0.5).zero_is_transparent);
+  EXPECT_FALSE(compile_transfer_function(clear, 1, 0.5).visibility.shows_zero());
   const TransferFunction foggy{{{-1, {}, 2}, {1, {}, 1}}, false};
-  EXPECT_FALSE(compile_transfer_function(foggy, 1, 0.5).zero_is_transparent);
+  EXPECT_TRUE(compile_transfer_function(foggy, 1, 0.5).visibility.shows_zero());
   // On a logarithmic scale zero lies before the first point.
   const TransferFunction log{{{0.01, {}, 0}, {1, {}, 1}}, true};
-  EXPECT_TRUE(compile_transfer_function(log, 1, 0.5).zero_is_transparent);
+  EXPECT_FALSE(compile_transfer_function(log, 1, 0.5).visibility.shows_zero());
 }
 
 TEST(Classifier, SpeaksTheBuffersUnits) {
