@@ -12,6 +12,7 @@ namespace motes {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 using testing::StartsWith;
 
 constexpr const char* data = " --data '" MOTES_SOURCE_DIR "/data/bench'";
@@ -100,6 +101,47 @@ TEST_F(Bench, Table2ComparesEnginesInBothViews) {
   EXPECT_THAT(workspace_.read("out/bench/table2.svg"), HasSubstr("nanobowl close"));
 }
 
+TEST_F(Bench, Fig6CutsOutOnePartAfterTheOther) {
+  EXPECT_EQ(bench("scenes tryptophan").status, 0);
+  const Outcome outcome = measure("fig6 tryptophan");
+  EXPECT_EQ(outcome.err, "");
+  const auto rows = result("fig6")["rows"];
+  ASSERT_EQ(rows.size(), 4U);  // a thousand and all, with two supports each
+  EXPECT_EQ(rows[0]["particles"], 1000);
+  EXPECT_EQ(rows[1]["particles"], 1000);
+  EXPECT_EQ(rows[3]["particles"], 6830);
+  EXPECT_EQ(rows[0]["support_factor"], 2.05);
+  EXPECT_EQ(rows[1]["support_factor"], 6.61);
+  EXPECT_GT(rows[1]["sweep"]["kernel_evaluations"], rows[0]["sweep"]["kernel_evaluations"]);
+  EXPECT_THAT(workspace_.read("out/bench/fig6.svg"), Not(HasSubstr("nan")));
+}
+
+TEST_F(Bench, Fig7EndsRaysEarlyAndLate) {
+  measure("fig7 zeolite");
+  const auto rows = result("fig7")["rows"];
+  ASSERT_EQ(rows.size(), 2U * (8 + 4 + 5));
+  EXPECT_EQ(rows[0]["termination_opacity"], 0.5);
+  EXPECT_EQ(rows[7]["termination_opacity"], 1);
+  EXPECT_LT(rows[0]["samples_per_ray"], rows[7]["samples_per_ray"]);
+  EXPECT_THAT(workspace_.read("out/bench/fig7.svg"), HasSubstr("coherent, close"));
+  EXPECT_THAT(workspace_.read("out/bench/fig7_passes.svg"), Not(HasSubstr("nan")));
+}
+
+TEST_F(Bench, Fig8AndFig9MakePictures) {
+  measure("fig8 zeolite");
+  measure("fig9 zeolite");
+  const auto kappas = result("fig8")["rows"], sigmas = result("fig9")["rows"];
+  ASSERT_EQ(kappas.size(), 3U);
+  ASSERT_EQ(sigmas.size(), 5U);
+  EXPECT_LT(kappas[0]["mean_opacity"], kappas[2]["mean_opacity"]);
+  EXPECT_LT(sigmas[0]["sweep"]["kernel_evaluations"], sigmas[4]["sweep"]["kernel_evaluations"]);
+  for (const auto& rows : {kappas, sigmas}) {
+    for (const auto& row : rows) {
+      EXPECT_THAT(workspace_.read(row["picture"]), StartsWith("\x89PNG")) << row;
+    }
+  }
+}
+
 TEST_F(Bench, ASceneTooLargeForTheMemoryIsRefusedFirst) {
   for (const std::string what : {"scenes", "table1", "table2"}) {
     EXPECT_THAT(failure("bench " + what + " tryptophan cosmology --memory 2" + data, 1),
@@ -113,6 +155,8 @@ TEST_F(Bench, WrongCommandLines) {
   EXPECT_THAT(failure("bench table3", 2), HasSubstr("did you mean 'table"));
   EXPECT_THAT(failure("bench scenes zeolit", 2), HasSubstr("did you mean 'zeolite'"));
   EXPECT_THAT(failure("bench table1 --scenes zeolite,fog", 2), HasSubstr("unknown scene 'fog'"));
+  EXPECT_THAT(failure(std::string("bench fig6 zeolite tryptophan") + data, 1),
+              HasSubstr("fig6 takes one scene; 2 are named"));
   EXPECT_THAT(failure("bench table1 --repeat 0", 2), HasSubstr("--repeat"));
   EXPECT_THAT(failure("bench table1 --size 5", 2), HasSubstr("--size"));
   EXPECT_THAT(failure("bench table1 --memory -1", 2), HasSubstr("--memory"));

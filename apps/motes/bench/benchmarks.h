@@ -26,5 +26,9 @@ struct BenchJob {
 void run_scenes(const BenchJob& job);
 void run_table1(const BenchJob& job);
 void run_table2(const BenchJob& job);
+void run_fig6(const BenchJob& job);
+void run_fig7(const BenchJob& job);
+void run_fig8(const BenchJob& job);
+void run_fig9(const BenchJob& job);
 
 }  // namespace motes

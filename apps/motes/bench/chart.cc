@@ -8,6 +8,8 @@
 #include <cmath>
 #include <string_view>
 
+#include "core/vec.h"
+
 namespace motes {
 namespace {
 
@@ -83,7 +85,7 @@ void draw_captions(Drawing& drawing, const std::string& title, const std::string
   for (std::size_t s = 0; s < series.size(); ++s) {
     drawing.rectangle(x, 36, 12, 12, colors[s % colors.size()]);
     drawing.text(x + 17, 46, series[s].name, "start");
-    x += 34 + 6.6 * static_cast<double>(series[s].name.size());
+    x += 30 + 6.4 * static_cast<double>(series[s].name.size());
   }
 }
 
@@ -139,35 +141,60 @@ std::string to_svg(const BarChart& chart) {
   return drawing.svg();
 }
 
-std::string to_svg(const LineChart& chart) {
-  constexpr double width = 520, label_height = 50;
-  const auto place = [&chart](double x) { return chart.log_x ? std::log10(x) : x; };
-  double low = 1e300, high = -1e300, top_value = 0;
-  for (const auto& series : chart.series) {
-    for (const auto& [x, y] : series.points) {
-      low = std::min(low, place(x));
-      high = std::max(high, place(x));
-      top_value = std::max(top_value, y);
-    }
+namespace {
+
+/// Values to places along an axis, from 0 to 1; logarithmic axes span whole decades.
+class Axis {
+ public:
+  Axis(bool log, double low, double high) : log_(log) {
+    low_ = log ? std::floor(std::log10(low)) : low;
+    high_ = log ? std::ceil(std::log10(high)) : high;
+    if (!(high_ > low_)) high_ = low_ + 1;
+    step_ = log ? 1 : tick_step(high_ - low_);
+    if (!log) high_ = step_ * std::ceil(high_ / step_);
   }
-  const double step = tick_step(top_value);
-  const double last = step * std::ceil(top_value / step);
-  const auto to_x = [&](double x) {
-    return left + 12 + (width - 24) * (place(x) - low) / (high - low);
-  };
-  const auto to_y = [&](double y) { return top + plot_height * (1 - y / last); };
+  double place(double value) const {
+    return ((log_ ? std::log10(value) : value) - low_) / (high_ - low_);
+  }
+  std::vector<double> ticks() const {
+    std::vector<double> values;
+    for (int i = 0; i <= static_cast<int>(std::round((high_ - low_) / step_)); ++i) {
+      const double at = low_ + i * step_;
+      values.push_back(log_ ? std::pow(10, at) : at);
+    }
+    return values;
+  }
+
+ private:
+  bool log_;
+  double low_, high_, step_;
+};
+
+}  // namespace
+
+std::string to_svg(const LineChart& chart) {
+  constexpr double width = 620, label_height = 50;
+  Bounds3d bounds;
+  for (const auto& series : chart.series) {
+    for (const auto& [x, y] : series.points) bounds.add(Point3d(x, y, 0));
+  }
+  const double first_x =
+      chart.log_x ? bounds.min.x
+                  : tick_step(bounds.max.x) * std::floor(bounds.min.x / tick_step(bounds.max.x));
+  const Axis x_axis(chart.log_x, first_x, bounds.max.x);
+  const Axis y_axis(chart.log_y, chart.log_y ? bounds.min.y : 0, bounds.max.y);
+  const auto to_x = [&](double x) { return left + width * x_axis.place(x); };
+  const auto to_y = [&](double y) { return top + plot_height * (1 - y_axis.place(y)); };
 
   Drawing drawing(left + width + right, top + plot_height + label_height);
   draw_captions(drawing, chart.title, chart.y_name, chart.series);
-  for (double y = 0; y <= last * 1.0001; y += step) {
+  for (const double y : y_axis.ticks()) {
     drawing.line(left, to_y(y), left + width, to_y(y), "#ddd");
     drawing.text(left - 6, to_y(y) + 4, fmt::format("{:g}", y), "end");
   }
-  const double x_step = chart.log_x ? 1 : tick_step(high - low);
-  for (double x = x_step * std::ceil(low / x_step); x <= high * 1.0001; x += x_step) {
-    const double value = chart.log_x ? std::pow(10, x) : x;
-    drawing.line(to_x(value), top + plot_height, to_x(value), top + plot_height + 5, "#222");
-    drawing.text(to_x(value), top + plot_height + 18, fmt::format("{:g}", value));
+  for (const double x : x_axis.ticks()) {
+    drawing.line(to_x(x), top + plot_height, to_x(x), top + plot_height + 5, "#222");
+    drawing.text(to_x(x), top + plot_height + 18, fmt::format("{:g}", x));
   }
   drawing.text(left + width / 2, top + plot_height + 38, chart.x_name);
   for (std::size_t s = 0; s < chart.series.size(); ++s) {
@@ -175,8 +202,9 @@ std::string to_svg(const LineChart& chart) {
     const std::string_view color = colors[s % colors.size()];
     for (std::size_t i = 0; i < points.size(); ++i) {
       const double x = to_x(points[i].first), y = to_y(points[i].second);
-      if (i > 0)
+      if (i > 0) {
         drawing.line(to_x(points[i - 1].first), to_y(points[i - 1].second), x, y, color, 2);
+      }
       drawing.circle(x, y, color);
     }
   }

@@ -19,14 +19,14 @@ struct BarChart {
   std::vector<Series> series;
 };
 
-/// Lines through points; the vertical axis starts at 0.
+/// Lines through points; a vertical axis that is not logarithmic starts at 0.
 struct LineChart {
   struct Series {
     std::string name;
     std::vector<std::pair<double, double>> points;
   };
   std::string title, x_name, y_name;
-  bool log_x = false;
+  bool log_x = false, log_y = false;
   std::vector<Series> series;
 };
 

@@ -25,6 +25,10 @@ constexpr const char* examples =
   scenes    make the particles of the scenes
   table1    their sizes, memory and build times, beside the paper's Table 1
   table2    frames per second of all engines, far and close, beside the paper's Table 2
+  fig6      frames per second from a thousand to all particles of the cosmological box
+  fig7      frames per second with rays that end early or late, and with passes of many samples
+  fig8      pictures for several kernel scales (kappa), and their frames per second
+  fig9      pictures for several support factors (sigma), and their frames per second
 
 Scenes: zeolite, tryptophan, nanobowl, nanosphere_90k, nanosphere_740k, sio2, anp3, cosmology.
 Results are printed, and written to out/bench as JSON and SVG. What is missing of the scenes is made
@@ -39,9 +43,18 @@ Examples:
 struct Benchmark {
   std::string_view name;
   void (*run)(const BenchJob&);
+  /// The scene that it takes where none is named; "": all.
+  std::string_view default_scene;
+  /// Whether it takes more than one.
+  bool many_scenes = true;
 };
-constexpr Benchmark benchmarks[] = {
-    {"scenes", run_scenes}, {"table1", run_table1}, {"table2", run_table2}};
+constexpr Benchmark benchmarks[] = {{"scenes", run_scenes, ""},
+                                    {"table1", run_table1, ""},
+                                    {"table2", run_table2, ""},
+                                    {"fig6", run_fig6, "cosmology", false},
+                                    {"fig7", run_fig7, "cosmology", false},
+                                    {"fig8", run_fig8, "nanobowl"},
+                                    {"fig9", run_fig9, "nanobowl"}};
 
 struct Options {
   std::string what, data = "data/bench", output = "out/bench";
@@ -85,10 +98,18 @@ void run(const Options& options) {
   const Workplace workplace(options.data, options.output, memory);
   Scene scene;
   options.size.apply(scene);
-  BenchJob job{workplace, find_bench_scenes(options.scenes), options.bench};
+  const Benchmark& benchmark = find_benchmark(options.what);
+  std::vector<std::string> names = options.scenes;
+  if (names.empty() && !benchmark.default_scene.empty()) {
+    names.emplace_back(benchmark.default_scene);
+  }
+  BenchJob job{workplace, find_bench_scenes(names), options.bench};
+  if (!benchmark.many_scenes && job.scenes.size() > 1) {
+    throw Error(fmt::format("{} takes one scene; {} are named", benchmark.name, job.scenes.size()));
+  }
   job.options.width = scene.render.width;
   job.options.height = scene.render.height;
-  find_benchmark(options.what).run(job);
+  benchmark.run(job);
 }
 
 }  // namespace
@@ -103,7 +124,10 @@ void add_bench_command(CLI::App& program) {
       ->check(validator(find_benchmark));
   const CLI::Validator scene_name =
       validator([](const std::string& name) { find_bench_scenes({name}); });
-  CLI::Option* names = command->add_option("SCENE", options->scenes, "which scenes (default: all)")
+  CLI::Option* names = command
+                           ->add_option("SCENE", options->scenes,
+                                        "which scenes (default: all,\nor cosmology for fig6 and "
+                                        "fig7, nanobowl for fig8 and fig9)")
                            ->type_name("")
                            ->delimiter(',')
                            ->check(scene_name);

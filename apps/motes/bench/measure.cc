@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <numeric>
 
 #include "core/error.h"
@@ -52,6 +53,21 @@ Camera moved_closer(const Camera& camera, double fraction) {
   Camera closer = camera;
   closer.eye = camera.target + fraction * (camera.eye - camera.target);
   return closer;
+}
+
+std::vector<Variant> engine_variants(const ResolvedScene& scene) {
+  std::vector<Variant> variants;
+  for (const Engine engine : {Engine::sweep, Engine::coherent}) {
+    variants.push_back({scene, std::nullopt});
+    variants.back().scene.render.engine = engine;
+  }
+  return variants;
+}
+
+nlohmann::ordered_json to_json(const FrameTimes& times) {
+  return {{"frame_ms", times.median_ms}, {"frame_ms_min", times.min_ms},
+          {"frames", times.frames},      {"fps", times.fps()},
+          {"samples", times.samples},    {"kernel_evaluations", times.kernel_evaluations}};
 }
 
 std::vector<FrameTimes> measure_frames(const Renderer& renderer,

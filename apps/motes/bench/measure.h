@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -32,6 +33,9 @@ struct Variant {
   double patience_ms = std::numeric_limits<double>::infinity();
 };
 
+/// `scene` with sweep, then with coherent.
+std::vector<Variant> engine_variants(const ResolvedScene& scene);
+
 struct FrameTimes {
   double median_ms = 0, min_ms = 0;
   int frames = 0;
@@ -42,6 +46,8 @@ struct FrameTimes {
 
   double fps() const { return 1000 / median_ms; }
 };
+
+nlohmann::ordered_json to_json(const FrameTimes& times);
 
 /// Times `variants` in turn, frame by frame, so that whatever else the machine does meets them
 /// alike; each is warmed up by a frame. One result a variant.

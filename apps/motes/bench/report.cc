@@ -46,6 +46,11 @@ std::string machine_line(const BenchOptions& options) {
                      compiler);
 }
 
+std::string describe_measurement(const BenchOptions& options) {
+  return fmt::format("{}, {} x {}, medians of {} frames", machine_line(options), options.width,
+                     options.height, options.repeat);
+}
+
 void write_results(const BenchJob& job, std::string_view name, const nlohmann::ordered_json& rows) {
   utsname system{};
   ::uname(&system);

@@ -12,6 +12,9 @@ namespace motes {
 /// One line: processor, threads, instruction set, compiler.
 std::string machine_line(const BenchOptions& options);
 
+/// The same with the size of the frames and how many are timed.
+std::string describe_measurement(const BenchOptions& options);
+
 /// Writes `rows`, with the machine and the settings, to NAME.json of the results.
 void write_results(const BenchJob& job, std::string_view name, const nlohmann::ordered_json& rows);
 

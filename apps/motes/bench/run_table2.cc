@@ -6,7 +6,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "motes/bench/chart.h"
@@ -32,24 +31,18 @@ struct Row {
   }
 };
 
-Variant with_engine(ResolvedScene scene, Engine engine) {
-  scene.render.engine = engine;
-  return {std::move(scene), std::nullopt};
-}
-
 Row measure_row(const BenchJob& job, const BenchScene& entry, const PreparedScene& prepared,
                 bool close, Console& console) {
   ResolvedScene scene = prepared.resolved;
   if (close) scene.camera = moved_closer(scene.camera, entry.close);
-  const std::vector<FrameTimes> times = measure_frames(
-      prepared.renderer, {with_engine(scene, Engine::sweep), with_engine(scene, Engine::coherent)},
-      job.options, console);
+  const std::vector<FrameTimes> times =
+      measure_frames(prepared.renderer, engine_variants(scene), job.options, console);
   Row row{&entry, close, scene.camera, times[0], times[1], std::nullopt};
   // Direct takes about eight times as long as coherent.
   constexpr double patience_ms = 2000;
   if (row.coherent.median_ms <= patience_ms) {
-    Variant direct = with_engine(scene, Engine::direct);
-    direct.patience_ms = patience_ms;
+    Variant direct{scene, std::nullopt, patience_ms};
+    direct.scene.render.engine = Engine::direct;
     row.direct = measure_frames(prepared.renderer, {direct}, job.options, console)[0];
   }
   return row;
@@ -83,12 +76,6 @@ void print(const Row& row) {
       row.sweep.samples_per_ray, row.sweep.fps(), row.coherent.fps(), or_dash(direct), row.ratio(),
       or_dash(over_direct), or_dash(mic), or_dash(cpu), or_dash(over_paper));
   std::fflush(stdout);
-}
-
-nlohmann::ordered_json to_json(const FrameTimes& times) {
-  return {{"frame_ms", times.median_ms}, {"frame_ms_min", times.min_ms},
-          {"frames", times.frames},      {"fps", times.fps()},
-          {"samples", times.samples},    {"kernel_evaluations", times.kernel_evaluations}};
 }
 
 nlohmann::ordered_json to_json(const Row& row, const BenchJob& job, const PreparedScene& prepared) {
@@ -130,8 +117,7 @@ void add_to_chart(const Row& row, BarChart& chart) {
 
 void run_table2(const BenchJob& job) {
   job.workplace.check_room(job.scenes);
-  fmt::print("{}, {} x {}, medians of {} frames\n\n", machine_line(job.options), job.options.width,
-             job.options.height, job.options.repeat);
+  fmt::print("{}\n\n", describe_measurement(job.options));
   print_header();
   nlohmann::ordered_json rows = nlohmann::json::array();
   BarChart chart{"Frames per second",
