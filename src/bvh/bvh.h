@@ -41,6 +41,9 @@ struct Bvh {
   std::size_t num_particles = 0;
 
   std::size_t num_leaves() const { return (num_particles + leaf_size - 1) / leaf_size; }
+  std::size_t level_end(std::size_t level) const {
+    return level + 1 < level_begin.size() ? level_begin[level + 1] : nodes.size();
+  }
   std::size_t bytes() const { return nodes.size() * sizeof(Node); }
 };
 
@@ -62,6 +65,18 @@ UninitializedVector<std::uint32_t> spatial_order(std::span<const Sphere> spheres
 /// all.
 Bvh build_bvh(std::span<const float> x, std::span<const float> y, std::span<const float> z,
               std::span<const float> radius);
+
+/// Fits the bounds of a tree to its particles where they are now, in the order that it was built
+/// in.
+void refit_bvh(Bvh& bvh, std::span<const float> x, std::span<const float> y,
+               std::span<const float> z, std::span<const float> radius);
+
+/// The box of all particles' centres.
+Bounds3f bounds_of(const Bvh& bvh);
+
+/// Surface of all leaves' boxes, each extended by its largest radius: what the number of leaves
+/// that rays meet goes with. Particles that moved on since the tree was built make it larger.
+double leaf_area(const Bvh& bvh);
 
 /// Visits the leaves that `hits` does not rule out. hits(const Bvh::Node&) -> bit c set if child c
 /// is to be visited; visit(leaf index). Hot: nothing is checked.

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numbers>
 
@@ -56,18 +57,6 @@ double effective_weight(const FieldSource& source, std::size_t i, double radius,
   return weight / (radius * radius * radius) * length_scale * length_scale * length_scale;
 }
 
-/// What has to be known of all kernels of a field, or of all fields, before they can be scaled.
-struct Extremes {
-  Bounds3f centers;  ///< relative to the origin
-  float min_radius = std::numeric_limits<float>::max(), max_radius = 0;
-
-  void add(const Extremes& other) {
-    centers.add(other.centers);
-    min_radius = std::min(min_radius, other.min_radius);
-    max_radius = std::max(max_radius, other.max_radius);
-  }
-};
-
 /// reduce(i, T& result) for all i < n, in parallel; T::add joins results in any order.
 template <class T, class Reduce>
 T reduce_all(std::size_t n, Reduce&& reduce) {
@@ -83,39 +72,91 @@ T reduce_all(std::size_t n, Reduce&& reduce) {
       });
 }
 
-Extremes extremes_of(const ParticleSet& particles, const FieldSource& source) {
-  return reduce_all<Extremes>(source.index.size(), [&](std::size_t i, Extremes& e) {
+/// Of the centres, relative to the origin.
+Bounds3f bounds_of(const ParticleSet& particles, const FieldSource& source) {
+  return reduce_all<Bounds3f>(source.index.size(), [&](std::size_t i, Bounds3f& box) {
     const std::uint32_t p = source.index[i];
-    e.centers.add(Point3f{particles.x[p], particles.y[p], particles.z[p]});
-    const float radius = source.radius_of(i);
-    e.min_radius = std::min(e.min_radius, radius);
-    e.max_radius = std::max(e.max_radius, radius);
+    box.add(Point3f{particles.x[p], particles.y[p], particles.z[p]});
   });
 }
 
-struct Weights {
+/// File's lengths.
+struct RadiusRange {
+  float min = std::numeric_limits<float>::max(), max = 0;
+
+  void add(const RadiusRange& other) {
+    min = std::min(min, other.min);
+    max = std::max(max, other.max);
+  }
+};
+
+RadiusRange radius_range(const FieldSource& source) {
+  return reduce_all<RadiusRange>(source.radius.size(), [&](std::size_t i, RadiusRange& range) {
+    range.add({source.radius[i], source.radius[i]});
+  });
+}
+
+struct WeightRange {
   double max = 0;  ///< magnitude
   bool positive = false, negative = false;
 
-  void add(const Weights& other) {
+  void add(const WeightRange& other) {
     max = std::max(max, other.max);
     positive = positive || other.positive;
     negative = negative || other.negative;
   }
 };
 
-FieldKernels summarise(const FieldSource& source, const Extremes& extremes, double length_scale) {
-  const auto weights = reduce_all<Weights>(source.index.size(), [&](std::size_t i, Weights& w) {
+/// Of effective weights.
+WeightRange weight_range(const FieldSource& source, double length_scale) {
+  const std::size_t different =
+      source.index.empty() ? 0 : std::max(source.radius.size(), source.weight.size());
+  return reduce_all<WeightRange>(different, [&](std::size_t i, WeightRange& range) {
     const double radius = source.radius_of(i) * length_scale;
     const double weight = effective_weight(source, i, radius, length_scale);
-    w.add({std::abs(weight), weight > 0, weight < 0});
+    range.add({std::abs(weight), weight > 0, weight < 0});
   });
+}
+
+FieldKernels summarise(const FieldSource& source, const RadiusRange& radii, double length_scale) {
   FieldKernels field{.name = source.name, .kernel = source.kernel, .normalise = source.normalise};
-  field.min_radius = static_cast<float>(extremes.min_radius * length_scale);
-  field.max_radius = extremes.max_radius;
+  const WeightRange weights = weight_range(source, length_scale);
+  field.min_radius = static_cast<float>(radii.min * length_scale);
+  field.max_radius = radii.max;
   field.mixed_signs = weights.positive && weights.negative;
   field.value_scale = unit_scale(weights.max);
   return field;
+}
+
+std::vector<RadiusRange> radius_ranges(const std::vector<FieldSource>& fields) {
+  std::vector<RadiusRange> ranges;
+  std::transform(fields.begin(), fields.end(), std::back_inserter(ranges), radius_range);
+  return ranges;
+}
+
+/// What the scale of lengths goes by; file's lengths.
+double largest_length(const Bounds3d& centers, const std::vector<RadiusRange>& ranges) {
+  const Vector3d extent = centers.diagonal();
+  double largest = std::max({extent.x, extent.y, extent.z});
+  for (const RadiusRange& range : ranges) {
+    largest = std::max(largest, static_cast<double>(range.max));
+  }
+  return largest;
+}
+
+/// `box` is relative to the particles' origin.
+void set_centers(const ParticleSet& particles, const Bounds3d& box, KernelSet& set) {
+  set.origin = particles.origin;
+  const Vector3d shift{set.origin.x, set.origin.y, set.origin.z};
+  set.centers = {box.min + shift, box.max + shift};
+}
+
+void set_fields(const std::vector<FieldSource>& fields, const std::vector<RadiusRange>& ranges,
+                KernelSet& set) {
+  set.fields.clear();
+  for (std::size_t f = 0; f < fields.size(); ++f) {
+    set.fields.push_back(summarise(fields[f], ranges[f], set.length_scale));
+  }
 }
 
 /// Where each field's kernels begin in the order of the sources, one field after another, and at
@@ -129,23 +170,27 @@ std::vector<std::size_t> begins_of(const std::vector<FieldSource>& fields) {
   return begins;
 }
 
+/// Element j of a field's source; `scale` is the set's length_scale, a power of two: exact.
+Sphere sphere_at(const ParticleSet& particles, const FieldSource& source, std::size_t j,
+                 float scale) {
+  const std::uint32_t p = source.index[j];
+  return {particles.x[p] * scale, particles.y[p] * scale, particles.z[p] * scale,
+          source.radius_of(j) * scale};
+}
+
 /// All kernels in the order of the sources: one read from memory each where the tree's order, which
 /// is another one, asks for them.
 UninitializedVector<Sphere> gather(const ParticleSet& particles,
-                                   const std::vector<FieldSource>& fields, double length_scale) {
-  const std::vector<std::size_t> begins = begins_of(fields);
+                                   const std::vector<FieldSource>& fields,
+                                   const std::vector<std::size_t>& begins, float scale) {
   UninitializedVector<Sphere> spheres(begins.back());
-  const auto s = static_cast<float>(length_scale);  // a power of two: exact
   for (std::size_t f = 0; f < fields.size(); ++f) {
-    const FieldSource& source = fields[f];
-    tbb::parallel_for(
-        tbb::blocked_range<std::size_t>(0, source.index.size(), grain), [&](const auto& range) {
-          for (std::size_t i = range.begin(); i != range.end(); ++i) {
-            const std::uint32_t p = source.index[i];
-            spheres[begins[f] + i] = {particles.x[p] * s, particles.y[p] * s, particles.z[p] * s,
-                                      static_cast<float>(source.radius_of(i) * length_scale)};
-          }
-        });
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, fields[f].index.size(), grain),
+                      [&](const auto& range) {
+                        for (std::size_t j = range.begin(); j != range.end(); ++j) {
+                          spheres[begins[f] + j] = sphere_at(particles, fields[f], j, scale);
+                        }
+                      });
   }
   return spheres;
 }
@@ -165,68 +210,94 @@ void allocate_kernels(std::size_t n, KernelSet& set) {
   if (set.fields.size() > 1) allocate(set.field, std::uint8_t{0});
 }
 
-/// Puts the kernels into the tree's order.
-void place_kernels(std::span<const Sphere> spheres, std::span<const std::uint32_t> order,
+/// Puts gathered kernels into the tree's order.
+void place_kernels(std::span<const Sphere> spheres, const KernelOrder& order,
                    const std::vector<FieldSource>& fields, KernelSet& set) {
-  const std::vector<std::size_t> begins = begins_of(fields);
-  constexpr std::size_t ahead = 32;  // a sphere is asked for so many kernels before it is used
-  tbb::parallel_for(
-      tbb::blocked_range<std::size_t>(0, order.size(), grain), [&](const auto& range) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i) {
-          if (i + ahead < order.size()) __builtin_prefetch(&spheres[order[i + ahead]]);
-          const std::uint32_t k = order[i];
-          const auto f = static_cast<std::size_t>(
-              std::upper_bound(begins.begin() + 1, begins.end() - 1, k) - (begins.begin() + 1));
-          const Sphere& sphere = spheres[k];
-          set.x[i] = sphere.x;
-          set.y[i] = sphere.y;
-          set.z[i] = sphere.z;
-          set.radius[i] = sphere.radius;
-          set.weight[i] = static_cast<float>(
-              effective_weight(fields[f], k - begins[f], sphere.radius, set.length_scale) *
-              set.fields[f].value_scale);
-          if (!set.field.empty()) set.field[i] = static_cast<std::uint8_t>(f);
-        }
-      });
+  constexpr std::size_t ahead = 32;  // spheres are asked for so long before they are used
+  const std::size_t n = order.kernels.size();
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, grain), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i != range.end(); ++i) {
+      if (i + ahead < n) __builtin_prefetch(&spheres[order.kernels[i + ahead]]);
+      const std::uint32_t k = order.kernels[i];
+      std::size_t f = 0;
+      while (k >= order.begins[f + 1]) ++f;
+      const Sphere& sphere = spheres[k];
+      set.x[i] = sphere.x;
+      set.y[i] = sphere.y;
+      set.z[i] = sphere.z;
+      set.radius[i] = sphere.radius;
+      const double weight =
+          effective_weight(fields[f], k - order.begins[f], sphere.radius, set.length_scale);
+      set.weight[i] = static_cast<float>(weight * set.fields[f].value_scale);
+      if (!set.field.empty()) set.field[i] = static_cast<std::uint8_t>(f);
+    }
+  });
 }
+
+/// The kernels of an array, without its padding.
+std::span<const float> kernels_of(const UninitializedVector<float>& array, std::size_t n) {
+  return std::span(array).first(n);
+}
+
+/// A new tree is due when the leaves' area has grown by this factor (docs/performance.md, "The
+/// tree").
+constexpr double max_growth = 1.5;
 
 }  // namespace
 
-KernelSet build_kernel_set(const ParticleSet& particles, const std::vector<FieldSource>& fields) {
+KernelSet build_kernel_set(const ParticleSet& particles, const std::vector<FieldSource>& fields,
+                           KernelOrder* order) {
   if (fields.size() > max_fields) {
     throw Error(fmt::format("{} fields, expected at most {}", fields.size(), max_fields));
   }
   KernelSet set;
   set.origin = particles.origin;
-
-  // The box of all centres, and the scale of lengths that follows from it.
-  std::vector<Extremes> extremes;
-  Extremes all;
-  for (const FieldSource& source : fields) {
-    extremes.push_back(extremes_of(particles, source));
-    all.add(extremes.back());
-  }
-  if (all.centers.empty()) return set;
-  const Vector3d shift{set.origin.x, set.origin.y, set.origin.z};
-  set.centers = {Point3d(all.centers.min) + shift, Point3d(all.centers.max) + shift};
-  const Vector3d extent = set.centers.diagonal();
-  set.length_scale =
-      unit_scale(std::max({extent.x, extent.y, extent.z, static_cast<double>(all.max_radius)}));
-  for (std::size_t f = 0; f < fields.size(); ++f) {
-    set.fields.push_back(summarise(fields[f], extremes[f], set.length_scale));
-  }
+  Bounds3f box;
+  for (const FieldSource& source : fields) box.add(bounds_of(particles, source));
+  if (box.empty()) return set;
+  set_centers(particles, {Point3d(box.min), Point3d(box.max)}, set);
+  const std::vector<RadiusRange> ranges = radius_ranges(fields);
+  set.length_scale = unit_scale(largest_length(set.centers, ranges));
+  set_fields(fields, ranges, set);
 
   // Kernels in leaf order, padded to whole leaves.
+  KernelOrder built;
+  built.begins = begins_of(fields);
+  const std::size_t n = built.begins.back();
   {
-    const UninitializedVector<Sphere> spheres = gather(particles, fields, set.length_scale);
-    const UninitializedVector<std::uint32_t> order = spatial_order(spheres);
-    allocate_kernels(order.size(), set);
-    place_kernels(spheres, order, fields, set);
-    set.bvh.num_particles = order.size();
+    const UninitializedVector<Sphere> spheres =
+        gather(particles, fields, built.begins, static_cast<float>(set.length_scale));
+    built.kernels = spatial_order(spheres);
+    allocate_kernels(n, set);
+    place_kernels(spheres, built, fields, set);
   }
-  const auto kernels = [&](const auto& v) { return std::span(v).first(set.size()); };
-  set.bvh = build_bvh(kernels(set.x), kernels(set.y), kernels(set.z), kernels(set.radius));
+  set.bvh = build_bvh(kernels_of(set.x, n), kernels_of(set.y, n), kernels_of(set.z, n),
+                      kernels_of(set.radius, n));
+  if (order != nullptr) {
+    built.leaf_area = leaf_area(set.bvh);
+    *order = std::move(built);
+  }
   return set;
+}
+
+bool refit_kernel_set(const ParticleSet& particles, const std::vector<FieldSource>& fields,
+                      const KernelOrder& order, KernelSet& set) {
+  const std::size_t n = set.size();
+  if (n == 0 || order.kernels.size() != n || begins_of(fields) != order.begins) return false;
+  const std::vector<RadiusRange> ranges = radius_ranges(fields);
+  set_fields(fields, ranges, set);
+  place_kernels(gather(particles, fields, order.begins, static_cast<float>(set.length_scale)),
+                order, fields, set);
+  refit_bvh(set.bvh, kernels_of(set.x, n), kernels_of(set.y, n), kernels_of(set.z, n),
+            kernels_of(set.radius, n));
+  const Bounds3f box = bounds_of(set.bvh);  // internal lengths
+  const double unit = 1 / set.length_scale;
+  set_centers(particles,
+              {{unit * box.min.x, unit * box.min.y, unit * box.min.z},
+               {unit * box.max.x, unit * box.max.y, unit * box.max.z}},
+              set);
+  const double largest = largest_length(set.centers, ranges) * set.length_scale;
+  return largest > 0.25 && largest < 8 && leaf_area(set.bvh) <= max_growth * order.leaf_area;
 }
 
 }  // namespace motes

@@ -53,7 +53,25 @@ struct KernelSet {
   Bounds3d box() const;
 };
 
-/// Gathers the fields' particles and builds the tree. Throws Error for too many fields or kernels.
-KernelSet build_kernel_set(const ParticleSet& particles, const std::vector<FieldSource>& fields);
+/// What it takes to fit a KernelSet to the next frame of its particles.
+struct KernelOrder {
+  /// Kernels in leaf order, counted through all fields' `index`, one field after another.
+  UninitializedVector<std::uint32_t> kernels;
+  std::vector<std::size_t> begins;  ///< where each field's begin in that count, and its end
+  double leaf_area = 0;             ///< of the tree when it was built
+};
+
+/// Gathers the fields' particles and builds the tree; keeps what refit_kernel_set() takes in
+/// `order` if that is not null. Throws Error for too many fields or kernels.
+KernelSet build_kernel_set(const ParticleSet& particles, const std::vector<FieldSource>& fields,
+                           KernelOrder* order = nullptr);
+
+/// Puts new positions, radii and weights into the order and the tree of `set`, which takes a
+/// fraction of the time of a build. What is drawn is that of a new set, whatever has moved where.
+/// False if a new one is due: the number of a field's kernels, the fields or the scale of the data
+/// have changed, or the leaves have grown so much that frames lose more time than a build takes;
+/// `set` is of no use then.
+bool refit_kernel_set(const ParticleSet& particles, const std::vector<FieldSource>& fields,
+                      const KernelOrder& order, KernelSet& set);
 
 }  // namespace motes

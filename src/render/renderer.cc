@@ -130,6 +130,19 @@ Renderer::Renderer(const ParticleSet& particles, const std::vector<FieldSource>&
   build_ms_ = stopwatch.milliseconds();
 }
 
+TreeUpdate Renderer::set_particles(const ParticleSet& particles,
+                                   const std::vector<FieldSource>& fields) {
+  const Stopwatch stopwatch;
+  TreeUpdate update = TreeUpdate::refitted;
+  if (!refit_kernel_set(particles, fields, order_, kernels_)) {
+    update = TreeUpdate::rebuilt;
+    kernels_ = {};  // its memory is free before the new one needs it
+    kernels_ = build_kernel_set(particles, fields, &order_);
+  }
+  build_ms_ = stopwatch.milliseconds();
+  return update;
+}
+
 void Renderer::set_kernel(std::size_t field, const Kernel& kernel) {
   assert(field < kernels_.fields.size());
   kernels_.fields[field].kernel = kernel;

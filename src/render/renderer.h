@@ -31,6 +31,9 @@ struct RenderStatistics {
   std::string engine, instruction_set;
 };
 
+/// How a Renderer took a new frame of its particles.
+enum class TreeUpdate { refitted, rebuilt };
+
 class Renderer {
  public:
   /// Gathers the fields' kernels and builds the tree; needs neither argument afterwards.
@@ -46,14 +49,22 @@ class Renderer {
   void render(const ResolvedScene& scene, const RenderOptions& options, Framebuffer& image,
               RenderStatistics* statistics = nullptr) const;
 
+  /// Takes the next frame of moving particles, with the kernels of `fields`. Refits the tree as
+  /// long as the fields keep their numbers of particles and the tree has not lost its worth; else,
+  /// and the first time, builds it anew, which from then on keeps 4 more bytes a particle. Needs
+  /// neither argument afterwards. Throws what the constructor throws.
+  TreeUpdate set_particles(const ParticleSet& particles, const std::vector<FieldSource>& fields);
+
   /// Changes sigma and kappa of a field; the tree stays.
   void set_kernel(std::size_t field, const Kernel& kernel);
 
   const KernelSet& kernels() const { return kernels_; }
+  /// Time that the last build or refit took.
   double build_ms() const { return build_ms_; }
 
  private:
   KernelSet kernels_;
+  KernelOrder order_;  ///< empty until particles move
   double build_ms_ = 0;
 };
 

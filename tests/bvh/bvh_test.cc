@@ -266,6 +266,29 @@ RC_GTEST_PROP(Bvh, InvariantsHoldWhateverThePositions, ()) {
   build_and_check(cloud);
 }
 
+TEST(Refit, FitsTheBoundsToWhereTheParticlesAre) {
+  for (const std::size_t n : {1, 17, 5000}) {
+    Cloud cloud = random_cloud(n, 11).in_spatial_order();
+    Bvh bvh = build_bvh(cloud.x, cloud.y, cloud.z, cloud.radius);
+    const Cloud elsewhere = random_cloud(n, 12);
+    cloud.x = elsewhere.x;
+    cloud.radius = elsewhere.radius;
+    refit_bvh(bvh, cloud.x, cloud.y, cloud.z, cloud.radius);
+    expect_invariants(bvh, cloud);
+  }
+}
+
+TEST(LeafArea, IsThatOfTheLeavesBoxesExtendedByTheirRadii) {
+  Cloud cloud;
+  EXPECT_EQ(leaf_area(build_bvh(cloud.x, cloud.y, cloud.z, cloud.radius)), 0);
+  for (int i = 0; i < 16; ++i) cloud.add(5, 6, 7, 0.5f);
+  cloud.add(1, 2, 3, 1);
+  cloud.add(2, 4, 3, 0.5f);
+  // A cube of 1, and a box of 1 x 2 x 0, which a radius of 1 makes 3 x 4 x 2.
+  EXPECT_DOUBLE_EQ(leaf_area(build_bvh(cloud.x, cloud.y, cloud.z, cloud.radius)),
+                   6 + 2 * (12 + 8 + 6));
+}
+
 TEST(Traverse, VisitsEveryLeafOnceAndOnlyThoseThatAreHit) {
   const Cloud cloud = random_cloud(5000, 2);
   const Bvh bvh = build_and_check(cloud);

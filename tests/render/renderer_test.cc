@@ -7,6 +7,7 @@
 #include <random>
 
 #include "core/error.h"
+#include "image/compare.h"
 #include "support/particles_at.h"
 
 namespace motes {
@@ -81,6 +82,86 @@ TEST(Renderer, ChangesSigmaAndKappaWithoutTouchingTheTree) {
   const Renderer fresh(particles, {field_of_all(particles, 0.5f, 1, {3, 0.7})});
   const ResolvedScene scene = scene_along_z(0.2, ramp);
   EXPECT_EQ(changed.render(scene, {}), fresh.render(scene, {}));
+}
+
+/// A frame of a trajectory: each particle `distance` or less from where it was along each axis.
+ParticleSet moved(const ParticleSet& particles, double distance, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> step(-distance, distance);
+  std::vector<Point3d> points;
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    points.push_back(particles.position(i) + Vector3d{step(random), step(random), step(random)});
+  }
+  return particles_at(points);
+}
+
+/// Two fields that share out the particles, with radii and weights that differ from `seed` to seed.
+std::vector<FieldSource> two_fields(const ParticleSet& particles, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> factor(0.7f, 1.3f);
+  std::vector<FieldSource> fields(2);
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    FieldSource& field = fields[i % 3 == 0 ? 1 : 0];
+    field.index.push_back(static_cast<std::uint32_t>(i));
+    field.radius.push_back(0.4f * factor(random));
+    field.weight.push_back(factor(random));
+  }
+  fields[1].normalise = true;
+  return fields;
+}
+
+/// The pictures of `renderer` are those of one that is built from this frame.
+void expect_fresh_pictures(const Renderer& renderer, const ParticleSet& particles,
+                           const std::vector<FieldSource>& fields) {
+  const Renderer fresh(particles, fields);
+  EXPECT_EQ(renderer.kernels().centers, fresh.kernels().centers);
+  ResolvedScene scene = scene_along_z(0.2, ramp);
+  scene.transfer_functions.resize(fields.size(), ramp);
+  for (const Engine engine : {Engine::sweep, Engine::coherent, Engine::direct}) {
+    scene.render.engine = engine;
+    const Framebuffer expected = fresh.render(scene, {});
+    EXPECT_GT(middle_alpha(expected), 0.2);
+    EXPECT_LT(compare_images(renderer.render(scene, {}), expected).max, 2e-5) << name_of(engine);
+  }
+}
+
+TEST(Renderer, RefitsItsTreeToTheNextFrame) {
+  ParticleSet particles = random_particles(3000, 4);
+  std::vector<FieldSource> fields = two_fields(particles, 1);
+  Renderer renderer(particles, fields);
+  EXPECT_EQ(renderer.set_particles(particles, fields), TreeUpdate::rebuilt);  // the first time
+  for (unsigned frame = 2; frame < 5; ++frame) {
+    particles = moved(particles, 0.1, frame);
+    fields = two_fields(particles, frame);
+    EXPECT_EQ(renderer.set_particles(particles, fields), TreeUpdate::refitted);
+    expect_fresh_pictures(renderer, particles, fields);
+  }
+  particles.origin.x += 1.25;
+  EXPECT_EQ(renderer.set_particles(particles, fields), TreeUpdate::refitted);
+  expect_fresh_pictures(renderer, particles, fields);
+}
+
+TEST(Renderer, RebuildsItsTreeWhereARefitIsNotWorthIt) {
+  const ParticleSet particles = random_particles(3000, 4);
+  std::vector<FieldSource> fields = two_fields(particles, 1);
+  Renderer renderer(particles, fields);
+  renderer.set_particles(particles, fields);
+  const auto expect_rebuilt = [&](const ParticleSet& next) {
+    EXPECT_EQ(renderer.set_particles(next, fields), TreeUpdate::rebuilt);
+    expect_fresh_pictures(renderer, next, fields);
+    EXPECT_EQ(renderer.set_particles(next, fields), TreeUpdate::refitted);
+    expect_fresh_pictures(renderer, next, fields);
+  };
+  expect_rebuilt(moved(particles, 3, 5));     // neighbours are neighbours no more
+  expect_rebuilt(moved(particles, 1e-9, 6));  // back again
+  fields[0].index.pop_back();                 // another number of kernels
+  fields[0].radius.pop_back();
+  fields[0].weight.pop_back();
+  expect_rebuilt(particles);
+  std::swap(fields[0], fields[1]);  // the same number, of other fields
+  expect_rebuilt(particles);
+  expect_rebuilt(particles_at(std::vector<Point3d>(particles.size())));  // all in one place
+  expect_rebuilt(particles);
 }
 
 TEST(Renderer, OnePassGivesThePictureOfManyPasses) {
