@@ -241,7 +241,7 @@ std::span<const float> kernels_of(const UninitializedVector<float>& array, std::
 
 /// A new tree is due when the leaves' area has grown by this factor (docs/performance.md, "The
 /// tree").
-constexpr double max_growth = 1.5;
+constexpr double max_growth = 1.75;
 
 }  // namespace
 
