@@ -26,6 +26,19 @@ double extinction_of_zero(const std::vector<Knot>& knots, bool log_scale) {
   return knots.back().values[3];
 }
 
+/// One over the distance of neighbouring knots; 0 where distances differ.
+double inverse_spacing_of(const std::vector<Knot>& knots) {
+  const double first = knots.front().argument;
+  const auto segments = static_cast<double>(knots.size() - 1);
+  const double spacing = (knots.back().argument - first) / segments;
+  if (!(spacing > 0)) return 0;
+  for (std::size_t i = 1; i < knots.size(); ++i) {
+    const double expected = first + static_cast<double>(i) * spacing;
+    if (std::abs(knots[i].argument - expected) > 1e-6 * spacing) return 0;
+  }
+  return 1 / spacing;
+}
+
 }  // namespace
 
 Classifier compile_transfer_function(const TransferFunction& function, double value_scale,
@@ -44,7 +57,8 @@ Classifier compile_transfer_function(const TransferFunction& function, double va
   const std::size_t segments = std::max<std::size_t>(1, knots.size() - 1);
   c.num_segments = static_cast<int>(segments);
   c.row_size = (segments + max_lanes - 1) / max_lanes * max_lanes;
-  c.table.assign(Classifier::num_rows * c.row_size, 0.0f);
+  c.table.assign(Classifier::num_rows * c.row_size + max_lanes, 0.0f);
+  c.inverse_spacing = static_cast<float>(std::min(inverse_spacing_of(knots), 1e38));
   for (std::size_t s = 0; s < segments; ++s) {
     const Knot &a = knots[s], &b = knots[std::min(s + 1, knots.size() - 1)];
     const auto entry = [&](int row) -> float& {

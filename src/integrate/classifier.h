@@ -20,8 +20,10 @@ struct Classifier {
   bool log_scale = false;
   float log_shift = 0;  ///< with log_scale: log10(value) = log10(buffer's value) + log_shift
   int num_segments = 0;
-  std::size_t row_size = 0;  ///< whole vectors
-  AlignedVector<float> table;
+  /// One over the width of the segments if that is the same for all, else 0.
+  float inverse_spacing = 0;
+  std::size_t row_size = 0;    ///< whole vectors
+  AlignedVector<float> table;  ///< rows, and room to load one more vector behind the last
   const float* row(int i) const { return table.data() + static_cast<std::size_t>(i) * row_size; }
 
   Visibility visibility{};  ///< buffer's values that have extinction

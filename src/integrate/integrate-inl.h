@@ -53,21 +53,23 @@ struct TablePlace {
   Lanes fraction;  ///< of the segment, in [0, 1]: clamped at the table's ends
 };
 
-/// How a table is read: a single segment is a broadcast, a row of one vector a permutation.
-enum class TableKind { one_segment, one_vector, many };
+/// How a table is read: a single segment is a broadcast, a row of one or two vectors a permutation
+/// (of two only with AVX-512), longer ones are gathered.
+enum class TableKind { one_segment, one_vector, two_vectors, many };
 
 /// The simplest that does for all of them.
 HWY_INLINE TableKind kind_of(const std::vector<Classifier>& classifiers) {
   int most = 1;
   for (const Classifier& c : classifiers) most = std::max(most, c.num_segments);
   if (most == 1) return TableKind::one_segment;
-  return most <= num_lanes ? TableKind::one_vector : TableKind::many;
+  if (most <= num_lanes) return TableKind::one_vector;
+  return HWY_TARGET <= HWY_AVX3 && most <= 2 * num_lanes ? TableKind::two_vectors : TableKind::many;
 }
 
 /// A row of the table. Known to the compiler where a row is one vector.
 template <TableKind kKind>
 HWY_INLINE const float* row_of(const Classifier& c, int row) {
-  if constexpr (kKind == TableKind::many) return c.row(row);
+  if constexpr (kKind >= TableKind::two_vectors) return c.row(row);
   return c.table.data() + row * max_lanes;
 }
 
@@ -80,6 +82,11 @@ HWY_INLINE Lanes look_up(LaneTag d, const Classifier& c, int row,
     return hn::Set(d, entries[0]);
   } else if constexpr (kKind == TableKind::one_vector) {
     return hn::TableLookupLanes(hn::Load(d, entries), hn::IndicesFromVec(d, segment));
+  } else if constexpr (kKind == TableKind::two_vectors) {
+#if HWY_TARGET <= HWY_AVX3
+    return Lanes{_mm512_permutex2var_ps(hn::Load(d, entries).raw, segment.raw,
+                                        hn::Load(d, entries + num_lanes).raw)};
+#endif
   } else {
     return hn::GatherIndex(d, entries, segment);
   }
@@ -90,6 +97,15 @@ HWY_INLINE TablePlace find_segment(LaneTag d, const Classifier& c, Lanes argumen
   const hn::RebindToSigned<LaneTag> di;
   auto segment = hn::Zero(di);
   const float* const begins = row_of<kKind>(c, Classifier::begin);
+  if (kKind != TableKind::one_segment && c.inverse_spacing > 0) {
+    // Named colour maps are evenly spaced.
+    const Lanes from_begin =
+        hn::Mul(hn::Sub(argument, hn::Set(d, begins[0])), hn::Set(d, c.inverse_spacing));
+    const Lanes place =
+        hn::Min(hn::Max(from_begin, hn::Zero(d)), hn::Set(d, static_cast<float>(c.num_segments)));
+    segment = hn::Min(hn::ConvertTo(di, place), hn::Set(di, c.num_segments - 1));
+    return {segment, hn::Sub(place, hn::ConvertTo(d, segment))};
+  }
   if (kKind != TableKind::one_segment && c.num_segments <= 2 * max_lanes) {
     for (int s = 1; s < c.num_segments; ++s) {
       const auto behind = hn::Ge(argument, hn::Set(d, begins[s]));
@@ -417,6 +433,10 @@ HWY_NOINLINE void integrate_slab(const std::vector<Classifier>& classifiers,
     add_visible<kGradients, TableKind::one_segment>(d, shading, samples, visible, state, colors);
   } else if (kind == TableKind::one_vector) {
     add_visible<kGradients, TableKind::one_vector>(d, shading, samples, visible, state, colors);
+  } else if (kind == TableKind::two_vectors) {
+    if constexpr (HWY_TARGET <= HWY_AVX3) {
+      add_visible<kGradients, TableKind::two_vectors>(d, shading, samples, visible, state, colors);
+    }
   } else {
     add_visible<kGradients, TableKind::many>(d, shading, samples, visible, state, colors);
   }

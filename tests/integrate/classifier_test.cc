@@ -43,5 +43,16 @@ TEST(Classifier, SpeaksTheBuffersUnits) {
   EXPECT_EQ(c.row(Classifier::rise + 1)[0], 1);
 }
 
+TEST(Classifier, KnowsEvenSpacing) {
+  const TransferFunction even{{{1, {}, 0}, {3, {}, 1}, {5, {}, 2}, {7, {}, 0}}, false};
+  EXPECT_EQ(compile_transfer_function(even, 0.5, 1).inverse_spacing, 1);
+  const TransferFunction uneven{{{1, {}, 0}, {3, {}, 1}, {5.1, {}, 2}, {7, {}, 0}}, false};
+  EXPECT_EQ(compile_transfer_function(uneven, 1, 1).inverse_spacing, 0);
+  const TransferFunction log{{{0.01, {}, 0}, {1, {}, 1}, {100, {}, 2}}, true};
+  EXPECT_EQ(compile_transfer_function(log, 1, 1).inverse_spacing, 0.5F);
+  const TransferFunction flat{{{1, {}, 1}}, false};
+  EXPECT_EQ(compile_transfer_function(flat, 1, 1).inverse_spacing, 0);
+}
+
 }  // namespace
 }  // namespace motes

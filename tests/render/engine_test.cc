@@ -184,6 +184,23 @@ TEST(Engines, CoincidentParticlesOfBothSigns) {
   check(s, "coincident");
 }
 
+TEST(Engines, EvenlySpacedPointsAsNamedMapsHave) {
+  for (const int num_points : {4, 17, 33, 34, 80}) {
+    for (const bool log_scale : {false, true}) {
+      PlainScene s = plain_scene({{0, 0, 0}, {1.5, 0.5, 1}, {0.2, -1, 0}}, 9);
+      TransferFunction& f = s.scene.transfer_functions[0];
+      f = {{}, log_scale};
+      for (int i = 0; i < num_points; ++i) {
+        const double t = static_cast<double>(i) / (num_points - 1);
+        f.points.push_back({.value = log_scale ? std::pow(10, 2 * t - 2) : 0.1 + t,
+                            .color = {t, 0.5 + 0.5 * std::sin(9 * t), 1 - t},
+                            .extinction = t * (1.2 + std::cos(7 * t))});
+      }
+      check(s, fmt::format("{} points, {}", num_points, log_scale ? "logarithmic" : "linear"));
+    }
+  }
+}
+
 TEST(Engines, BothSignsSeenAndZeroNot) {
   PlainScene s = plain_scene({{0, 0, 0}, {1.5, 0.5, 1}}, 9);
   s.scene.fields[0].weight = {1, -1};
