@@ -191,9 +191,10 @@ TEST(Engines, EvenlySpacedPointsAsNamedMapsHave) {
       TransferFunction& f = s.scene.transfer_functions[0];
       f = {{}, log_scale};
       for (int i = 0; i < num_points; ++i) {
-        const double t = static_cast<double>(i) / (num_points - 1);
-        f.points.push_back({.value = log_scale ? std::pow(10, 2 * t - 2) : 0.1 + t,
-                            .color = {t, 0.5 + 0.5 * std::sin(9 * t), 1 - t},
+        const double at = static_cast<double>(i) / (num_points - 1);
+        const auto t = static_cast<float>(at);
+        f.points.push_back({.value = log_scale ? std::pow(10, 2 * at - 2) : 0.1 + at,
+                            .color = {t, 0.5F + 0.5F * std::sin(9 * t), 1 - t},
                             .extinction = t * (1.2 + std::cos(7 * t))});
       }
       check(s, fmt::format("{} points, {}", num_points, log_scale ? "logarithmic" : "linear"));

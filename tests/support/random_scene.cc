@@ -126,7 +126,8 @@ TransferFunction draw_transfer_function(Draw& draw, double typical, double opaqu
   const bool clear_start = draw.chance(0.7);
   for (int i = 0; i < num_points; ++i) {
     const double t = num_points == 1 ? 0.5 : static_cast<double>(i) / (num_points - 1);
-    const double at = low + t * (high - low);
+    // Those of 40 are evenly spaced, as in named maps; the others are not.
+    const double at = low + t * (num_points == 40 ? 1 : 0.7 + 0.3 * t) * (high - low);
     const double ramp = num_points > 6 ? draw.uniform(0.8, 1) * t : draw.uniform(0, 1);
     const bool clear = clear_start && i <= num_points / 4 && num_points > 1;
     f.points.push_back({.value = typical * (f.log_scale ? std::pow(10, at) : at),
