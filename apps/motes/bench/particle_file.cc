@@ -49,7 +49,7 @@ void write_npy_particles(AtomicFile& file, const ParticleSet& particles) {
       }
       if (species_width > 0) {
         const std::string& name = particles.species_names[particles.species[first + i]];
-        std::memcpy(out, name.data(), name.size());
+        std::copy(name.begin(), name.end(), out);
       }
     }
     file.write(bytes);

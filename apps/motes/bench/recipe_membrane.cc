@@ -99,8 +99,9 @@ void Membrane::add_water(int count, double side) {
   const int columns = static_cast<int>(sites_x * site_spacing / spacing);
   const int rows = static_cast<int>(sites_y * site_spacing / spacing);
   for (int i = 0; i < count; ++i) {
-    const Vector3d cell(i % columns - 0.5 * (columns - 1), i / columns % rows - 0.5 * (rows - 1),
-                        side * (8.2 + i / (columns * rows)));
+    const int row = i / columns % rows, layer = i / (columns * rows);
+    const Vector3d cell(i % columns - 0.5 * (columns - 1), row - 0.5 * (rows - 1),
+                        side * (8.2 + layer));
     const Vector3d oxygen = spacing * cell + 0.3 * jitter(random_, next_++, 1);
     const Vector3d a = normalize(jitter(random_, next_, 1));
     const Vector3d b = normalize(cross(a, jitter(random_, next_ + 1, 1)));
@@ -122,9 +123,9 @@ ParticleSet Membrane::make() {
   for (const double side : {1.0, -1.0}) {
     for (int site = 0; site < sites_x * sites_y; ++site) {
       if (site == sites_x * sites_y / 2) continue;
-      add_lipid({site_spacing * (site % sites_x - (sites_x - 1) / 2),
-                 site_spacing * (site / sites_x - (sites_y - 1) / 2), 0},
-                side);
+      const int column = site % sites_x - (sites_x - 1) / 2;
+      const int row = site / sites_x - (sites_y - 1) / 2;
+      add_lipid({site_spacing * column, site_spacing * row, 0}, side);
     }
   }
   add_water(801, 1);

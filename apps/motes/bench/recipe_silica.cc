@@ -109,9 +109,8 @@ ParticleSet make_fractured_silica(const ParticleSet& glass) {
   };
   std::uint64_t index = 0;
   for (int copy = 0; copy < copies[0] * copies[1] * copies[2]; ++copy) {
-    const Vector3d corner{copy / (copies[1] * copies[2]) * block.size.x,
-                          copy / copies[2] % copies[1] * block.size.y,
-                          copy % copies[2] * block.size.z};
+    const int i = copy / (copies[1] * copies[2]), j = copy / copies[2] % copies[1];
+    const Vector3d corner{i * block.size.x, j * block.size.y, copy % copies[2] * block.size.z};
     for (std::size_t a = 0; a < block.positions.size(); ++a) {
       place(block.positions[a] + corner, index++, block.species[a]);
     }

@@ -38,7 +38,8 @@ Block aluminium_block() {
   const double size = periods * lattice_constant;
   block.size = {size, size, size};
   for (int i = 0; i < periods * periods * periods; ++i) {
-    const Vector3d cell(i / (periods * periods), i / periods % periods, i % periods);
+    const int layer = i / (periods * periods), row = i / periods % periods;
+    const Vector3d cell(layer, row, i % periods);
     for (const Vector3d& corner : corners) {
       block.positions.push_back((cell + corner) * lattice_constant);
       block.species.push_back(0);
