@@ -156,8 +156,9 @@ TEST(SpatialOrder, IsAHilbertCurve) {
   for (const int side : {2, 4, 16, 64}) {  // the last is sorted by several threads
     Cloud cloud;
     for (int i = 0; i < side * side * side; ++i) {
-      cloud.add(static_cast<float>(i % side), static_cast<float>(i / side % side),
-                static_cast<float>(i / side / side), 1);
+      const int row = i / side % side, layer = i / side / side;
+      cloud.add(static_cast<float>(i % side), static_cast<float>(row), static_cast<float>(layer),
+                1);
     }
     const Cloud sorted = cloud.in_spatial_order();
     for (std::size_t i = 1; i < sorted.x.size(); ++i) {
