@@ -63,6 +63,10 @@ struct Statistics {
 std::string to_json(const Statistics& s) {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
+  nlohmann::ordered_json stages;
+  for (std::size_t i = 0; i < num_stages; ++i) {
+    stages[stage_names[i]] = s.frame.stages.fraction(static_cast<Stage>(i));
+  }
   const nlohmann::ordered_json out{{"frame_ms", median(s.frame_ms)},
                                    {"frame_ms_min", *std::ranges::min_element(s.frame_ms)},
                                    {"build_ms", s.build_ms},
@@ -70,6 +74,7 @@ std::string to_json(const Statistics& s) {
                                    {"particles", s.particles},
                                    {"samples", s.frame.samples},
                                    {"kernel_evaluations", s.frame.kernel_evaluations},
+                                   {"stages", stages},
                                    {"particle_bytes", s.particle_bytes},
                                    {"tree_bytes", s.tree_bytes},
                                    {"peak_rss_bytes", usage.ru_maxrss * 1024},

@@ -85,14 +85,17 @@ void store_pixels(const RayState& rays, int px, int py, int width, Framebuffer& 
 /// The paper's multi-pass algorithm (section 4.2): slab by slab, sampling then integrating, until
 /// all rays of the packet have ended. Returns kernel evaluations.
 std::uint64_t render_packet(const FrameContext& context, const SamplingConstants& constants,
-                            const RayPacket& packet, SampleBuffer& buffer, RayState& rays) {
+                            const RayPacket& packet, SampleBuffer& buffer, RayState& rays,
+                            StageClock& clock) {
   std::uint64_t evaluations = 0;
   for (SampleIndex k = rays.begin; k <= rays.end; k += context.samples_per_pass) {
     const Slab slab{k, std::min(rays.end - k + 1, context.samples_per_pass)};
     buffer.reserve(slab.count);
     evaluations += sample_field(context, constants, packet, slab, buffer);
+    clock.lap(Stage::sums);
     integrate_buffer(context.classifiers, context.shading, slab, buffer, rays);
     clear_touched(buffer);
+    clock.lap(Stage::integrate);
   }
   return evaluations;
 }
@@ -111,16 +114,19 @@ TileCounts render_packets(const FrameContext& context, const Tile& tile, Framebu
   const SamplingConstants constants = make_constants(*context.kernels);
   SampleBuffer buffer(make_layout(context), std::min(context.samples_per_pass, 64));
   TileCounts counts;
+  StageClock clock(counts.stages);
   for (int py = tile.y; py < tile.y + tile.height; py += packet_height) {
     for (int px = tile.x; px < tile.x + tile.width; px += packet_width) {
       const RayPacket packet = make_ray_packet(context, px, py, packet_width, packet_height);
       RayState rays;
       start_rays(context, px, py, packet_width, packet_height, rays);
-      counts.kernel_evaluations += render_packet(context, constants, packet, buffer, rays);
+      clock.lap(Stage::setup);
+      counts.kernel_evaluations += render_packet(context, constants, packet, buffer, rays, clock);
       counts.samples += count_samples(rays);
       store_pixels(rays, px, py, packet_width, image);
     }
   }
+  clock.lap(Stage::setup);
   return counts;
 }
 
@@ -178,7 +184,7 @@ struct SweepMemory {
 template <bool kGradients, bool kAbsolute>
 std::uint64_t sample_tile(const FrameContext& context, const SamplingConstants& constants,
                           const TileSamples& placed, const Slab& slab, std::uint64_t live,
-                          const BlockSamples& blocks, SweepMemory& memory) {
+                          const BlockSamples& blocks, SweepMemory& memory, StageClock& clock) {
   std::uint64_t evaluations = 0;
   std::size_t listed = 0;
   do {
@@ -186,6 +192,7 @@ std::uint64_t sample_tile(const FrameContext& context, const SamplingConstants& 
     listed =
         list_factors<kGradients>(*context.kernels, constants, memory.gathered, memory.tile_kernels,
                                  placed, slab.count, listed, memory.lists);
+    clock.lap(Stage::factors);
     // What may be seen is known only where all kernels are there at once.
     const bool only = first && listed == memory.tile_kernels.size;
     unsigned strips = strips_of(live);
@@ -194,6 +201,7 @@ std::uint64_t sample_tile(const FrameContext& context, const SamplingConstants& 
                            first};
     evaluations +=
         sum_planes<kGradients, kAbsolute>(round, make_layout(context), strips, slab.count, blocks);
+    clock.lap(Stage::sums);
   } while (listed != memory.tile_kernels.size);
   return evaluations;
 }
@@ -201,7 +209,7 @@ std::uint64_t sample_tile(const FrameContext& context, const SamplingConstants& 
 /// Samples and integrates a tile in a slab. Returns kernel evaluations.
 std::uint64_t sweep_slab(const FrameContext& context, const SamplingConstants& constants,
                          const SlabFrame& frame, const Slab& slab, SweepMemory& memory,
-                         SweepTile& tile) {
+                         SweepTile& tile, StageClock& clock) {
   const SampleLayout layout = make_layout(context);
   const auto num_fields = static_cast<std::size_t>(layout.num_fields);
   const std::size_t stride = static_cast<std::size_t>(slab.count) * layout.floats_per_sample();
@@ -213,7 +221,8 @@ std::uint64_t sweep_slab(const FrameContext& context, const SamplingConstants& c
                       : context.absolute ? &sample_tile<true, true>
                                          : &sample_tile<true, false>;
   const std::uint64_t live = live_blocks(tile, slab);
-  const std::uint64_t evaluations = sample(context, constants, placed, slab, live, blocks, memory);
+  const std::uint64_t evaluations =
+      sample(context, constants, placed, slab, live, blocks, memory, clock);
   for (std::uint64_t left = live; left != 0; left &= left - 1) {
     const auto b = static_cast<std::size_t>(std::countr_zero(left));
     const std::uint64_t* const visible = blocks.visible + b * num_fields;
@@ -223,11 +232,14 @@ std::uint64_t sweep_slab(const FrameContext& context, const SamplingConstants& c
               visible, tile.blocks[b]);
     tile.end[b] = tile.blocks[b].end;
   }
+  clock.lap(Stage::integrate);
   return evaluations;
 }
 
 /// Slab by slab: one traversal for all tiles, then tile by tile sampling and integrating.
 TileCounts render_sweep(const FrameContext& context, const Tile& area, Framebuffer& image) {
+  TileCounts counts;
+  StageClock clock(counts.stages);
   const SamplingConstants constants = make_constants(*context.kernels);
   const auto tiles_along = [](int pixels) { return (pixels + sweep_tile - 1) / sweep_tile; };
   const auto num_tiles = static_cast<std::size_t>(tiles_along(area.width)) *
@@ -254,19 +266,22 @@ TileCounts render_sweep(const FrameContext& context, const Tile& area, Framebuff
       Visibility{-std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity()});
   std::transform(context.classifiers.begin(), context.classifiers.end(), memory.visibility,
                  [](const Classifier& c) { return c.visibility; });
-  TileCounts counts;
+  clock.lap(Stage::setup);
   while (begin <= end) {
     const Slab slab{begin, std::min(end - begin + 1, planes)};
     const SlabFrame frame = make_slab_frame(bounds, slab, context.view);
     gather_kernels(*context.kernels, constants, frame, make_frustum(bounds, frame, context.view),
                    memory.gathered);
+    clock.lap(Stage::traverse);
     end = -1;
     for (SweepTile& tile : tiles) {
       if (live_blocks(tile, slab) != 0) {
         find_tile_kernels(constants, memory.gathered, frame,
                           make_frustum(tile.bounds, frame, context.view), memory.tile_kernels);
+        clock.lap(Stage::cull);
         if (memory.tile_kernels.size != 0 || !zero_is_transparent(context)) {
-          counts.kernel_evaluations += sweep_slab(context, constants, frame, slab, memory, tile);
+          counts.kernel_evaluations +=
+              sweep_slab(context, constants, frame, slab, memory, tile, clock);
         }
       }
       end = std::max(end, *std::max_element(tile.end, tile.end + sweep_blocks));
@@ -280,6 +295,7 @@ TileCounts render_sweep(const FrameContext& context, const Tile& area, Framebuff
                    tile.y + b / sweep_blocks_across * sweep_block_height, sweep_block_width, image);
     }
   }
+  clock.lap(Stage::setup);
   return counts;
 }
 

@@ -10,6 +10,7 @@
 #include "image/framebuffer.h"
 #include "integrate/classifier.h"
 #include "integrate/shading.h"
+#include "render/stages.h"
 #include "samples/samples.h"
 #include "scene/scene.h"
 
@@ -39,6 +40,13 @@ struct Tile {
 struct TileCounts {
   std::uint64_t samples = 0;             ///< inside the volume's box, up to each ray's end
   std::uint64_t kernel_evaluations = 0;  ///< carried out, those outside the support included
+  StageTicks stages;
+
+  void add(const TileCounts& other) {
+    samples += other.samples;
+    kernel_evaluations += other.kernel_evaluations;
+    stages.add(other.stages);
+  }
 };
 
 /// Renders `tile` into `image`. Hot: nothing is checked.

@@ -165,7 +165,7 @@ void Renderer::render(const ResolvedScene& scene, const RenderOptions& options, 
     image = Framebuffer(scene.render.width, scene.render.height);
   }
   const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
-  std::atomic<std::uint64_t> samples{0}, evaluations{0};
+  TileCounts all;
   if (kernels_.size() == 0) {
     std::fill(image.rgba.begin(), image.rgba.end(), 0.0f);
   } else {
@@ -173,8 +173,8 @@ void Renderer::render(const ResolvedScene& scene, const RenderOptions& options, 
     const int tile_size = tile_size_of(context.engine);
     const int columns = (context.width + tile_size - 1) / tile_size;
     const int rows = (context.height + tile_size - 1) / tile_size;
-    std::atomic<int> done{0};
-    std::mutex progress_mutex;
+    int done = 0;
+    std::mutex mutex;
     // TBB starts no more threads than the machine has, unless it is told to.
     const tbb::global_control parallelism(
         tbb::global_control::max_allowed_parallelism,
@@ -186,20 +186,20 @@ void Renderer::render(const ResolvedScene& scene, const RenderOptions& options, 
         const Tile tile{x, y, std::min(tile_size, context.width - x),
                         std::min(tile_size, context.height - y)};
         const TileCounts counts = render_tile(context, tile, image);
-        samples += counts.samples;
-        evaluations += counts.kernel_evaluations;
-        const int finished = ++done;
+        const std::lock_guard lock(mutex);
+        all.add(counts);
+        ++done;
         if (options.progress != nullptr) {
-          const std::lock_guard lock(progress_mutex);
-          options.progress->update("rendering", static_cast<double>(finished) / (columns * rows));
+          options.progress->update("rendering", static_cast<double>(done) / (columns * rows));
         }
       });
     });
   }
   if (statistics != nullptr) {
     *statistics = {stopwatch.milliseconds(),
-                   samples,
-                   evaluations,
+                   all.samples,
+                   all.kernel_evaluations,
+                   all.stages,
                    threads,
                    std::string(name_of(scene.render.engine)),
                    target};

@@ -10,6 +10,7 @@
 #include "field/kernel_set.h"
 #include "image/framebuffer.h"
 #include "particles/particle_set.h"
+#include "render/stages.h"
 #include "scene/scene.h"
 
 namespace motes {
@@ -27,6 +28,7 @@ struct RenderStatistics {
   double frame_ms = 0;
   std::uint64_t samples = 0;             ///< inside the volume's box, up to each ray's end
   std::uint64_t kernel_evaluations = 0;  ///< carried out, those outside the support included
+  StageTicks stages;                     ///< of all threads
   int threads = 0;
   std::string engine, instruction_set;
 };

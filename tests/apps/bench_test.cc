@@ -22,7 +22,7 @@ class Bench : public CommandLine {
   /// `arguments` with the bundled data, at a tiny size.
   Outcome bench(const std::string& arguments) { return run("bench " + arguments + data); }
   Outcome measure(const std::string& arguments) {
-    const Outcome outcome = bench(arguments + " --size 64x64 --repeat 1");
+    Outcome outcome = bench(arguments + " --size 64x64 --repeat 1");
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     return outcome;
   }

@@ -245,6 +245,9 @@ TEST_F(CommandLine, StatisticsHaveEveryKey) {
   EXPECT_EQ(stats["engine"], "sweep");
   EXPECT_GT(stats["samples"], 0);
   EXPECT_LE(stats["frame_ms_min"], stats["frame_ms"]);
+  double sum = 0;
+  for (const auto& fraction : stats["stages"]) sum += fraction.get<double>();
+  EXPECT_NEAR(sum, 1, 1e-9);
 }
 
 TEST_F(CommandLine, ASceneIsToldByItsContentAndOptionsOverrideIt) {
