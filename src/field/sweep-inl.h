@@ -1,11 +1,10 @@
-// The sweep: the field on a slab of planes, tile by tile and block by block of pixels. Included
-// once per instruction set.
+// The sweep: the field on the planes of an area of pixels, kernel by kernel. Included once per
+// instruction set.
 //
 // On a plane of constant depth a sample's squared distance to a kernel's centre is a sum of one
 // term for its column of pixels and one for its row, so the Gaussian is a product of a column
-// factor and a row factor: two vectors of exponentials serve all 256 samples of a tile. Those of
-// all kernels that meet the tile are listed first (sweep_factors-inl.h); then each block takes what
-// reaches it from the lists, and its sums never leave the registers (docs/sweep.md).
+// factor and a row factor: a few vectors of exponentials serve all samples that the kernel reaches
+// there (docs/sweep.md).
 #if defined(MOTES_FIELD_SWEEP_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef MOTES_FIELD_SWEEP_INL_H_
 #undef MOTES_FIELD_SWEEP_INL_H_
@@ -15,83 +14,124 @@
 
 #include <hwy/highway.h>
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
-#include <type_traits>
+#include <numbers>
 
+#include "field/gather-inl.h"
 #include "field/sampling-inl.h"
-#include "field/sweep_factors-inl.h"
+#include "field/sweep_boxes-inl.h"
+#include "samples/area_buffer.h"
 #include "samples/lanes-inl.h"
-#include "samples/samples.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace motes {
 namespace HWY_NAMESPACE {
 
-/// What is summed is kept in blocks of one vector, 4 pixels wide: what is seen of small things lies
-/// in fewer of them than of rows. Blocks of a tile go row by row.
-inline constexpr int sweep_block_width = 4;
-inline constexpr int sweep_block_height = num_lanes / sweep_block_width;
-inline constexpr int sweep_blocks_across = sweep_tile / sweep_block_width;
-inline constexpr int sweep_blocks = sweep_blocks_across * sweep_tile / sweep_block_height;
+/// A block is one vector of a group's pixels, so many rows high.
+inline constexpr int block_rows = num_lanes / AreaBuffer::group_size;
+inline constexpr int group_blocks = AreaBuffer::group_pixels / num_lanes;
 
-/// Bit s is set if a block of strip s has its bit set in `blocks`.
-inline unsigned strips_of(std::uint64_t blocks) {
-  unsigned strips = 0;
-  for (; blocks != 0; blocks &= blocks - 1) {
-    const int b = std::countr_zero(blocks);
-    const int row = b / sweep_blocks_across * sweep_block_height;
-    const int h = b % sweep_blocks_across * sweep_block_width / num_lanes;
-    strips |= 1u << (row / strip_height * sweep_vectors + h);
-  }
-  return strips;
+/// Which channels there are, known to the compiler.
+template <bool kGradientsV, bool kAbsoluteV, bool kCountV = false>
+struct Channels {
+  static constexpr bool gradients = kGradientsV, absolute = kAbsoluteV;
+  /// Counts the samples inside of supports, which takes time.
+  static constexpr bool count = kCountV;
+};
+
+/// A kernel on a plane.
+struct SweptKernel {
+  float x, y;  ///< of the first column and row of its box, relative to the centre
+  float dx, dy;
+  float dz;  ///< of the plane, relative to the centre
+  float exponent_scale, peak, cut;
+  float minus_inverse_radius_sq;
+};
+
+HWY_INLINE SweptKernel place_kernel(const GatheredKernels& gathered, std::size_t i,
+                                    const AreaPlane& plane, const GroupBox& box) {
+  const float scale = gathered.exponent_scale[i];
+  const auto first_column = static_cast<float>(box.column * AreaBuffer::group_size);
+  const auto first_row = static_cast<float>(box.row * AreaBuffer::group_size);
+  return {plane.x + first_column * plane.dx - gathered.x[i],
+          plane.y + first_row * plane.dy - gathered.y[i],
+          plane.dx,
+          plane.dy,
+          plane.z - gathered.z[i],
+          scale,
+          gathered.peak[i],
+          gathered.cut[i],
+          scale * (2 / std::numbers::log2e_v<float>)};
 }
 
-/// Bit s is set if some row of strip s is set in `rows`, which has an element for each vector of
-/// columns.
-inline unsigned strips_of(const std::array<RowBits, sweep_vectors>& rows) {
-  unsigned strips = 0;
-  for (int s = 0; s < sweep_strips; ++s) {
-    const unsigned of_column = rows[static_cast<std::size_t>(s % sweep_vectors)];
-    const bool any = (of_column >> (s / sweep_vectors * strip_height) & 0xfu) != 0;
-    strips |= static_cast<unsigned>(any) << s;
-  }
-  return strips;
+/// 2^exponent for exponents of at most 0; 0 where that is too small for a float.
+HWY_INLINE Lanes factor_of(LaneTag d, Lanes exponent) {
+#if HWY_TARGET <= HWY_AVX3
+  // Fraction and power are one operation each, and underflow comes out right.
+  const Lanes fraction{_mm512_reduce_ps(exponent.raw, _MM_FROUND_TO_NEAREST_INT)};
+  const Lanes whole = hn::Sub(exponent, fraction);
+  return Lanes{_mm512_scalef_ps(exp2_fraction(d, fraction).raw, whole.raw)};
+#else
+  return hn::IfThenElseZero(hn::Ge(exponent, hn::Set(d, min_exponent)), exp2_bounded(d, exponent));
+#endif
 }
 
-/// Bit i: entry `at` + i of the 32 may reach some of `rows`.
-HWY_INLINE std::uint32_t entries_reaching(const RowBits* at, RowBits rows) {
-  const hn::CappedTag<RowBits, 32> d;
-  std::uint32_t entries = 0;
-  for (std::size_t i = 0; i < 32; i += hn::Lanes(d)) {
-    const auto reached = hn::And(hn::Load(d, at + i), hn::Set(d, rows));
-    std::uint32_t bits = 0;
-    std::uint8_t bytes[8] = {};
-    hn::StoreMaskBits(d, hn::Ne(reached, hn::Zero(d)), bytes);
-    std::memcpy(&bits, bytes, sizeof bits);
-    entries |= bits << i;
+/// A kernel's factors in the columns and rows of its box, for at most so many groups of each.
+/// Column factors carry the peak; with gradients each has its derivative's part: the coordinate
+/// relative to the centre times minus_inverse_radius_sq.
+template <int kColumns, int kRows, class C>
+struct BoxFactors {
+  static constexpr int room(int groups) {
+    return (groups * AreaBuffer::group_size + num_lanes - 1) / num_lanes * num_lanes;
   }
-  return entries;
-}
+  alignas(64) float column[room(kColumns)], row[room(kRows)];
+  alignas(64) float column_slope[C::gradients ? room(kColumns) : 1];
+  alignas(64) float row_slope[C::gradients ? room(kRows) : 1];
+  float slope_z;
 
-/// Calls visit(entry) for the entries of a list that may reach some of `rows` in the columns of
-/// vector `h`. Returns how many there are.
-template <class Visit>
-HWY_INLINE std::uint64_t for_each_entry(const FactorLists& lists, const FactorLists::List& list,
-                                        std::size_t h, RowBits rows, Visit&& visit) {
-  std::uint64_t visited = 0;
-  for (std::size_t begin = list.begin; begin < list.end; begin += 32) {
-    std::uint32_t entries = entries_reaching(lists.rows[h].data() + begin, rows);
-    if (list.end - begin < 32) entries &= (1u << (list.end - begin)) - 1;
-    visited += static_cast<std::uint64_t>(std::popcount(entries));
-    for (; entries != 0; entries &= entries - 1) {
-      visit(begin + static_cast<std::size_t>(std::countr_zero(entries)));
+  /// Those of the first `columns` and `rows` groups.
+  HWY_INLINE void fill(LaneTag d, const SweptKernel& kernel, int columns, int rows) {
+    const Lanes scale = hn::Set(d, kernel.exponent_scale), peak = hn::Set(d, kernel.peak);
+    const Lanes slope = hn::Set(d, kernel.minus_inverse_radius_sq);
+    const auto coordinates = [&](int i, float first, float step) HWY_ATTR {
+      return hn::MulAdd(hn::Iota(d, static_cast<float>(i)), hn::Set(d, step), hn::Set(d, first));
+    };
+    for (int i = 0; i < columns * AreaBuffer::group_size; i += num_lanes) {
+      const Lanes x = coordinates(i, kernel.x, kernel.dx);
+      hn::Store(hn::Mul(peak, factor_of(d, hn::Mul(scale, hn::Mul(x, x)))), d, column + i);
+      if constexpr (C::gradients) hn::Store(hn::Mul(x, slope), d, column_slope + i);
     }
+    const Lanes dz_sq = hn::Set(d, kernel.dz * kernel.dz);
+    for (int i = 0; i < rows * AreaBuffer::group_size; i += num_lanes) {
+      const Lanes y = coordinates(i, kernel.y, kernel.dy);
+      hn::Store(factor_of(d, hn::Mul(scale, hn::MulAdd(y, y, dz_sq))), d, row + i);
+      if constexpr (C::gradients) hn::Store(hn::Mul(y, slope), d, row_slope + i);
+    }
+    slope_z = kernel.dz * kernel.minus_inverse_radius_sq;
   }
-  return visited;
+};
+
+/// Rows of a group spread over a vector: block v of a group takes, of four numbers that are one a
+/// row, that of each lane's row.
+HWY_INLINE Lanes spread_rows(LaneTag d, const float* rows, int v) {
+  if constexpr (num_lanes == AreaBuffer::group_size) {
+    return hn::Set(d, rows[v]);
+  } else {
+    alignas(64) static constexpr std::uint8_t order[2][64] = {
+        {0, 1, 2,  3,  0,  1,  2,  3,  0,  1,  2,  3,  0,  1,  2,  3,  4,  5,  6,  7, 4,  5,
+         6, 7, 4,  5,  6,  7,  4,  5,  6,  7,  8,  9,  10, 11, 8,  9,  10, 11, 8,  9, 10, 11,
+         8, 9, 10, 11, 12, 13, 14, 15, 12, 13, 14, 15, 12, 13, 14, 15, 12, 13, 14, 15},
+        {8,  9,  10, 11, 8,  9,  10, 11, 8,  9,  10, 11, 8,  9,  10, 11,
+         12, 13, 14, 15, 12, 13, 14, 15, 12, 13, 14, 15, 12, 13, 14, 15}};
+    const hn::Repartition<std::uint8_t, LaneTag> bytes;
+    const auto four = hn::BitCast(bytes, hn::LoadDup128(d, rows));
+    return hn::BitCast(d, hn::TableLookupBytes(four, hn::Load(bytes, order[v])));
+  }
 }
 
 /// sum + v where `inside`; AVX-512 does that in one operation.
@@ -100,179 +140,198 @@ HWY_INLINE Lanes add_inside(LaneTag, LaneMask inside, Lanes v, Lanes sum) {
                                 : hn::Add(sum, hn::IfThenElseZero(inside, v));
 }
 
-/// What one round of lists adds to the samples of a tile.
-struct SweepRound {
-  const FactorLists& lists;
-  const TileSamples& tile;
-  /// Of each field: gradients are kept only where some value of a strip may be seen.
-  const Visibility* visibility;
-  bool first;  ///< the samples hold nothing yet
+/// What the groups of a row have in common: vectors, one a block.
+template <class C>
+struct RowFactors {
+  Lanes row[group_blocks], slope[C::gradients ? group_blocks : 1];
+  Lanes slope_z, cut;
 };
 
-/// Sums of a few rows of a strip.
-template <int kRows, bool kGradients, bool kAbsolute>
-struct RowSums {
-  Lanes value[kRows], gradient[kGradients ? 3 : 1][kRows], absolute[kRows];
+template <int kColumns, int kRows, class C>
+HWY_INLINE RowFactors<C> spread_group(LaneTag d, const BoxFactors<kColumns, kRows, C>& factors,
+                                      float cut, int row) {
+  RowFactors<C> out;
+  for (int v = 0; v < group_blocks; ++v) {
+    out.row[v] = spread_rows(d, factors.row + AreaBuffer::group_size * row, v);
+    if constexpr (C::gradients) {
+      out.slope[v] = spread_rows(d, factors.row_slope + AreaBuffer::group_size * row, v);
+    }
+  }
+  out.slope_z = hn::Set(d, factors.slope_z);
+  out.cut = hn::Set(d, cut);
+  return out;
+}
+
+/// Adds a kernel to the samples of a group: `column` is that of the group in the kernel's box,
+/// `samples` the field's channel 0 in the group's first block. Returns how many samples lie inside
+/// of the support, if C::count.
+template <int kColumns, int kRows, class C>
+HWY_INLINE std::uint64_t add_to_group(LaneTag d, const BoxFactors<kColumns, kRows, C>& factors,
+                                      const RowFactors<C>& rows, int column, float* samples,
+                                      std::size_t block_floats) {
+  std::uint64_t inside_support = 0;
+  const Lanes columns = hn::LoadDup128(d, factors.column + AreaBuffer::group_size * column);
+  Lanes slope_x = columns;
+  if constexpr (C::gradients) {
+    slope_x = hn::LoadDup128(d, factors.column_slope + AreaBuffer::group_size * column);
+  }
+  for (int v = 0; v < group_blocks; ++v, samples += block_floats) {
+    // The kernel ends where its value falls below that at the support radius: no distance is
+    // needed.
+    const Lanes p = hn::Mul(columns, rows.row[v]), magnitude = hn::Abs(p);
+    const LaneMask inside = hn::Ge(magnitude, rows.cut);
+    hn::Store(add_inside(d, inside, p, hn::Load(d, samples)), d, samples);
+    if constexpr (C::gradients) {
+      const Lanes phi = hn::IfThenElseZero(inside, p);
+      const auto add = [&](int channel, Lanes slope) HWY_ATTR {
+        float* const gradient = samples + channel * num_lanes;
+        hn::Store(hn::MulAdd(phi, slope, hn::Load(d, gradient)), d, gradient);
+      };
+      add(1, slope_x);
+      add(2, rows.slope[v]);
+      add(3, rows.slope_z);
+    }
+    if constexpr (C::absolute) {
+      float* const absolute = samples + 4 * num_lanes;
+      hn::Store(add_inside(d, inside, magnitude, hn::Load(d, absolute)), d, absolute);
+    }
+    if constexpr (C::count) inside_support += hn::CountTrue(d, inside);
+  }
+  return inside_support;
+}
+
+/// Kernel evaluations, lane by lane.
+struct EvaluationCounts {
+  std::uint64_t carried_out = 0;     ///< those outside of the support included
+  std::uint64_t inside_support = 0;  ///< if Channels::count
 };
 
-/// Adds a list's entries on plane `k` in the columns of vector `h`, `row` being the first of the
-/// rows. Returns how many entries.
-template <int kRows, bool kGradients, bool kAbsolute>
-HWY_INLINE std::uint64_t sum_rows(LaneTag d, const SweepRound& round, const FactorLists::List& list,
-                                  int k, int h, int row,
-                                  RowSums<kRows, kGradients, kAbsolute>& sums) {
-  const FactorLists& lists = round.lists;
-  const Lanes x = hn::Load(d, round.tile.x[k] + h * num_lanes);
-  const auto rows = static_cast<RowBits>(((1u << kRows) - 1) << row);
-  return for_each_entry(
-      lists, list, static_cast<std::size_t>(h), rows, [&](std::size_t entry) HWY_ATTR {
-        const float* const factors =
-            lists.factors.data() + entry * (sweep_tile * (kGradients ? 3u : 2u));
-        const Lanes columns = hn::Load(d, factors + h * num_lanes);
-        const Lanes cut = hn::Set(d, lists.cut[entry]);
-        const float* const row_factors = factors + sweep_tile + row;
-        Lanes slope_x = hn::Zero(d), slope_z = hn::Zero(d);
-        if constexpr (kGradients) {
-          const FactorLists::Slopes& slopes = lists.slopes[entry];
-          slope_x =
-              hn::Mul(hn::Sub(x, hn::Set(d, slopes.x)), hn::Set(d, slopes.minus_inverse_radius_sq));
-          slope_z = hn::Set(d, slopes.z);
-        }
-        for (int j = 0; j < kRows; ++j) {
-          const Lanes p = hn::Mul(columns, hn::Set(d, row_factors[j])), magnitude = hn::Abs(p);
-          const LaneMask inside = hn::Ge(magnitude, cut);
-          sums.value[j] = add_inside(d, inside, p, sums.value[j]);
-          if constexpr (kGradients) {
-            const Lanes phi = hn::IfThenElseZero(inside, p);
-            const Lanes slope_y = hn::Set(d, row_factors[sweep_tile + j]);
-            sums.gradient[0][j] = hn::MulAdd(phi, slope_x, sums.gradient[0][j]);
-            sums.gradient[1][j] = hn::MulAdd(phi, slope_y, sums.gradient[1][j]);
-            sums.gradient[2][j] = hn::MulAdd(phi, slope_z, sums.gradient[2][j]);
-          }
-          if constexpr (kAbsolute) {
-            sums.absolute[j] = add_inside(d, inside, magnitude, sums.absolute[j]);
-          }
-        }
-      });
-}
+/// Groups with rays under way, one element a row.
+using LiveGroups = std::array<GroupBits, AreaBuffer::padded>;
 
-/// Rows of a strip, one vector each, as many as a block is high, to the blocks that they make.
-HWY_INLINE void rows_to_blocks(LaneTag d, Lanes* v) {
-#if HWY_TARGET <= HWY_AVX3
-  // Quarters of four vectors, transposed.
-  const auto shuffle = [](Lanes a, Lanes b, auto order) HWY_ATTR {
-    return Lanes{_mm512_shuffle_f32x4(a.raw, b.raw, decltype(order)::value)};
-  };
-  using First = std::integral_constant<int, 0x44>;
-  using Last = std::integral_constant<int, 0xee>;
-  using Even = std::integral_constant<int, 0x88>;
-  using Odd = std::integral_constant<int, 0xdd>;
-  const Lanes a = shuffle(v[0], v[1], First()), b = shuffle(v[2], v[3], First());
-  const Lanes c = shuffle(v[0], v[1], Last()), e = shuffle(v[2], v[3], Last());
-  v[0] = shuffle(a, b, Even());
-  v[1] = shuffle(a, b, Odd());
-  v[2] = shuffle(c, e, Even());
-  v[3] = shuffle(c, e, Odd());
-  (void)d;
-#else
-  if constexpr (sweep_block_height == 2) {
-    const Lanes upper = v[0];
-    v[0] = hn::ConcatLowerLower(d, v[1], upper);
-    v[1] = hn::ConcatUpperUpper(d, v[1], upper);
+/// Samples of one plane of the area.
+struct PlaneSamples {
+  AreaBuffer& buffer;
+  int plane;
+  std::size_t field_floats;  ///< from a field of a block to the next
+  const LiveGroups& live;
+
+  float* at(int row, int column, std::uint32_t field) const {
+    return buffer.at(row, column) + static_cast<std::size_t>(plane) * buffer.plane_floats() +
+           field * field_floats;
   }
-#endif
-}
-
-/// Turns rows of a strip into blocks and calls use(block, Lanes&) for each, blocks being counted
-/// from the first row's first.
-template <int kRows, class Use>
-HWY_INLINE void for_each_block(LaneTag d, Lanes (&rows)[kRows], Use&& use) {
-  for (int j = 0; j < kRows; j += sweep_block_height) {
-    rows_to_blocks(d, rows + j);
-    for (int i = 0; i < sweep_block_height; ++i) {
-      use(j / sweep_block_height * sweep_blocks_across + i, rows[j + i]);
+  AreaBuffer::PlaneBits bit() const { return AreaBuffer::PlaneBits{1} << plane; }
+  bool any_live(const GroupBox& box) const {
+    const GroupBits columns = (2u << box.last_column) - (1u << box.column);
+    GroupBits any = 0;
+    for (int row = box.row; row <= box.last_row; ++row) {
+      any |= live[static_cast<std::size_t>(row)];
     }
+    return (any & columns) != 0;
   }
-}
-
-/// Where sums go: blocks of a tile, one after the other.
-struct BlockSamples {
-  std::size_t stride;      ///< floats from a block to the next
-  float* samples;          ///< of block 0, laid out as in a SampleBuffer
-  std::uint64_t* visible;  ///< [block][field]: bit k is set if something may be seen on plane k
 };
 
-/// Sums field `f` on plane `k` of a strip; `samples` is the field's channel 0 in block 0. Returns
-/// how many entries.
-template <bool kGradients, bool kAbsolute>
-HWY_INLINE std::uint64_t sum_strip(LaneTag d, const SweepRound& round,
-                                   const FactorLists::List& list, int k, std::size_t f,
-                                   unsigned strip, const BlockSamples& blocks,
-                                   std::size_t num_fields, float* samples) {
-  // So many that all sums stay in registers; without AVX-512 there are only 16.
-  constexpr int rows_at_once = kGradients && HWY_TARGET > HWY_AVX3 ? 2 : strip_height;
-  const int h = static_cast<int>(strip) % sweep_vectors;
-  const int first_row = static_cast<int>(strip) / sweep_vectors * strip_height;
-  std::uint64_t visited = 0;
-  for (int row = first_row; row < first_row + strip_height; row += rows_at_once) {
-    RowSums<rows_at_once, kGradients, kAbsolute> sums;
-    for (int j = 0; j < rows_at_once; ++j) {
-      sums.value[j] = sums.absolute[j] = hn::Zero(d);
-      for (auto& component : sums.gradient) component[j] = hn::Zero(d);
+/// Adds kernels whose boxes have kColumns columns to all of their groups: no branch depends on
+/// which of these a kernel reaches, and few do not.
+template <int kColumns, class C>
+HWY_NOINLINE void add_narrow_kernels(LaneTag d, const GatheredKernels& gathered,
+                                     const BoxedKernels& list, const AreaPlane& plane,
+                                     const PlaneSamples& samples, EvaluationCounts& counts) {
+  const std::size_t row_floats = samples.buffer.row_floats();
+  const std::size_t group_floats = samples.buffer.group_floats();
+  const std::size_t block_floats = samples.buffer.block_floats();
+  const AreaBuffer::PlaneBits bit = samples.bit();
+  for (std::size_t i = 0; i < list.size; ++i) {
+    const GroupBox box = list.box_of(i);
+    if (!samples.any_live(box)) continue;
+    const std::size_t k = list.kernel[i];
+    BoxFactors<kColumns, AreaBuffer::groups, C> factors;
+    factors.fill(d, place_kernel(gathered, k, plane, box), kColumns, box.rows());
+    float* group = samples.at(box.row, box.column, gathered.field[k]);
+    AreaBuffer::PlaneBits* touched = &samples.buffer.touched(box.row, box.column);
+    for (int row = 0; row < box.rows(); ++row) {
+      const auto rows = spread_group(d, factors, gathered.cut[k], row);
+      for (int column = 0; column < kColumns; ++column) {
+        touched[column] |= bit;
+        counts.inside_support +=
+            add_to_group(d, factors, rows, column,
+                         group + static_cast<std::size_t>(column) * group_floats, block_floats);
+      }
+      group += row_floats;
+      touched += AreaBuffer::padded;
     }
-    const std::uint64_t entries = sum_rows(d, round, list, k, h, row, sums);
-    if (entries == 0 && !round.visibility[f].shows_zero()) continue;
-    visited += entries;
-    const int first_block = row / sweep_block_height * sweep_blocks_across + h * sweep_block_height;
-    const auto add_before = [&](int channel, int block, Lanes& sum) HWY_ATTR {
-      float* const at = samples + static_cast<std::size_t>(first_block + block) * blocks.stride +
-                        channel * num_lanes;
-      if (!round.first) sum = hn::Add(sum, hn::Load(d, at));
-      hn::Store(sum, d, at);
-    };
-    bool any_seen = false;
-    for_each_block(d, sums.value, [&](int block, Lanes& sum) HWY_ATTR {
-      add_before(0, block, sum);
-      const bool seen = may_be_seen(d, sum, round.visibility[f]);
-      blocks.visible[static_cast<std::size_t>(first_block + block) * num_fields + f] |=
-          std::uint64_t{seen} << k;
-      any_seen = any_seen || seen;
-    });
-    if (!kGradients || !any_seen) continue;
-    for (int i = 0; i < 3; ++i) {
-      for_each_block(d, sums.gradient[i],
-                     [&](int block, Lanes& sum) HWY_ATTR { add_before(1 + i, block, sum); });
-    }
-    if constexpr (kAbsolute) {
-      for_each_block(d, sums.absolute,
-                     [&](int block, Lanes& sum) HWY_ATTR { add_before(4, block, sum); });
-    }
+    counts.carried_out +=
+        static_cast<std::uint64_t>(kColumns * box.rows() * AreaBuffer::group_pixels);
   }
-  return visited;
 }
 
-/// Sets or, after the first round, adds to the samples on `num_planes` planes of the strips whose
-/// bits are set in `strips`, and sets bits of `blocks.visible`. Where nothing may be seen,
-/// gradients are left as they are. Returns kernel evaluations.
-template <bool kGradients, bool kAbsolute>
-HWY_NOINLINE std::uint64_t sum_planes(const SweepRound& round, const SampleLayout& layout,
-                                      unsigned strips, int num_planes, const BlockSamples& blocks) {
-  const LaneTag d;
-  const auto num_fields = static_cast<std::size_t>(layout.num_fields);
-  const std::size_t field_stride = layout.floats_per_sample() / num_fields;
-  const FactorLists::List* list = round.lists.lists.data();
-  float* samples = blocks.samples;
-  std::uint64_t visited = 0;
-  for (int k = 0; k < num_planes; ++k) {
-    for (std::size_t f = 0; f < num_fields; ++f, ++list, samples += field_stride) {
-      for (unsigned left = strips; left != 0; left &= left - 1) {
-        visited += sum_strip<kGradients, kAbsolute>(d, round, *list, k, f,
-                                                    static_cast<unsigned>(std::countr_zero(left)),
-                                                    blocks, num_fields, samples);
+/// Columns of the box's groups that a kernel may reach in its row `row` of groups, a bit each.
+inline GroupBits reached_columns(const SweptKernel& kernel, float support_sq, const GroupBox& box,
+                                 int row) {
+  constexpr float size = AreaBuffer::group_size, middle = 0.5f * (size - 1);
+  // The group's row of samples that is nearest to the centre, or between its rows.
+  const float y = kernel.y + (size * static_cast<float>(row) + middle) * kernel.dy;
+  const float nearest = std::max(std::abs(y) - middle * std::abs(kernel.dy), 0.0f);
+  const float half_sq = support_sq - kernel.dz * kernel.dz - nearest * nearest;
+  const float per_column = 1 / kernel.dx, slack = 1e-3f;
+  const float half = std::sqrt(std::max(half_sq, 0.0f)) * per_column + slack;
+  const float center = -kernel.x * per_column;
+  const float last_column = static_cast<float>(box.columns()) * size - 1;
+  const auto first = static_cast<unsigned>(std::clamp(std::ceil(center - half), 0.0f, last_column));
+  const auto last = static_cast<unsigned>(std::clamp(std::floor(center + half), 0.0f, last_column));
+  return (2u << last / AreaBuffer::group_size) - (1u << first / AreaBuffer::group_size);
+}
+
+/// Adds kernels with boxes of any size to those live groups that they reach.
+template <class C>
+HWY_NOINLINE void add_wide_kernels(LaneTag d, const GatheredKernels& gathered,
+                                   const BoxedKernels& list, const AreaPlane& plane,
+                                   const PlaneSamples& samples, EvaluationCounts& counts) {
+  const std::size_t group_floats = samples.buffer.group_floats();
+  const AreaBuffer::PlaneBits bit = samples.bit();
+  for (std::size_t i = 0; i < list.size; ++i) {
+    const GroupBox box = list.box_of(i);
+    if (!samples.any_live(box)) continue;
+    const std::size_t k = list.kernel[i];
+    const SweptKernel kernel = place_kernel(gathered, k, plane, box);
+    BoxFactors<AreaBuffer::groups, AreaBuffer::groups, C> factors;
+    factors.fill(d, kernel, box.columns(), box.rows());
+    for (int row = 0; row < box.rows(); ++row) {
+      GroupBits left = reached_columns(kernel, gathered.support_sq[k], box, row) &
+                       samples.live[static_cast<std::size_t>(box.row + row)] >> box.column;
+      counts.carried_out +=
+          static_cast<std::uint64_t>(std::popcount(left)) * AreaBuffer::group_pixels;
+      const auto rows = spread_group(d, factors, gathered.cut[k], row);
+      float* const group = samples.at(box.row + row, box.column, gathered.field[k]);
+      AreaBuffer::PlaneBits* const touched = &samples.buffer.touched(box.row + row, box.column);
+      for (; left != 0; left &= left - 1) {
+        const int column = std::countr_zero(left);
+        touched[column] |= bit;
+        counts.inside_support += add_to_group(
+            d, factors, rows, column, group + static_cast<std::size_t>(column) * group_floats,
+            samples.buffer.block_floats());
       }
     }
   }
-  return visited * strip_height * static_cast<std::uint64_t>(num_lanes);
+}
+
+/// Adds the kernels that reach a plane to its samples.
+template <class C>
+void sum_plane(const GatheredKernels& gathered, const PlaneKernels& kernels, const AreaPlane& plane,
+               const PlaneSamples& samples, EvaluationCounts& counts) {
+  const LaneTag d;
+  const auto add_narrow = [&]<int kColumns>() HWY_ATTR {
+    add_narrow_kernels<kColumns, C>(d, gathered, kernels.narrow[kColumns - 1], plane, samples,
+                                    counts);
+  };
+  static_assert(max_narrow_columns == 6);
+  add_narrow.template operator()<1>();
+  add_narrow.template operator()<2>();
+  add_narrow.template operator()<3>();
+  add_narrow.template operator()<4>();
+  add_narrow.template operator()<5>();
+  add_narrow.template operator()<6>();
+  add_wide_kernels<C>(d, gathered, kernels.wide, plane, samples, counts);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -8,16 +8,17 @@
 #define MOTES_INTEGRATE_INTEGRATE_INL_H_
 #endif
 
-#include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
+#include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 #include "integrate/classifier.h"
+#include "integrate/classify-inl.h"
 #include "integrate/shading.h"
 #include "samples/lanes-inl.h"
 #include "samples/samples.h"
@@ -25,198 +26,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace motes {
 namespace HWY_NAMESPACE {
-
-/// 1 - exp(-x) for x >= 0, relative error below 1e-7 (thin samples by the thousand must not drift).
-/// `may_exceed_one`: x may.
-HWY_INLINE Lanes opacity(LaneTag d, Lanes x, bool may_exceed_one) {
-  // Minimax polynomial of (1 - exp(-x)) / x on [0, 1], in pairs so that the sum is not one long
-  // chain.
-  const auto pair = [&](float constant, float linear) HWY_ATTR {
-    return hn::MulAdd(hn::Set(d, linear), x, hn::Set(d, constant));
-  };
-  const Lanes x2 = hn::Mul(x, x);
-  const Lanes low = hn::MulAdd(pair(1.666630980e-01f, -4.164557738e-02f), x2,
-                               pair(9.999999975e-01f, -4.999997703e-01f));
-  const Lanes high =
-      hn::MulAdd(hn::Set(d, 1.283807181e-04f), x2, pair(8.273095536e-03f, -1.298663742e-03f));
-  const Lanes thin = hn::Mul(hn::MulAdd(high, hn::Mul(x2, x2), low), x);
-  if (!may_exceed_one) return thin;
-  const LaneMask is_thick = hn::Gt(x, hn::Set(d, 1.0f));
-  if (HWY_LIKELY(hn::AllFalse(d, is_thick))) return thin;
-  const Lanes thick = hn::Sub(hn::Set(d, 1.0f), hn::Exp(d, hn::Neg(hn::Min(x, hn::Set(d, 80.0f)))));
-  return hn::IfThenElse(is_thick, thick, thin);
-}
-
-/// Where each lane's argument lies in a classifier's table.
-struct TablePlace {
-  hn::Vec<hn::RebindToSigned<LaneTag>> segment;
-  Lanes fraction;  ///< of the segment, in [0, 1]: clamped at the table's ends
-};
-
-/// How a table is read: a single segment is a broadcast, a row of one or two vectors a permutation
-/// (of two only with AVX-512), longer ones are gathered.
-enum class TableKind { one_segment, one_vector, two_vectors, many };
-
-/// The simplest that does for all of them.
-HWY_INLINE TableKind kind_of(const std::vector<Classifier>& classifiers) {
-  int most = 1;
-  for (const Classifier& c : classifiers) most = std::max(most, c.num_segments);
-  if (most == 1) return TableKind::one_segment;
-  if (most <= num_lanes) return TableKind::one_vector;
-  return HWY_TARGET <= HWY_AVX3 && most <= 2 * num_lanes ? TableKind::two_vectors : TableKind::many;
-}
-
-/// A row of the table. Known to the compiler where a row is one vector.
-template <TableKind kKind>
-HWY_INLINE const float* row_of(const Classifier& c, int row) {
-  if constexpr (kKind >= TableKind::two_vectors) return c.row(row);
-  return c.table.data() + row * max_lanes;
-}
-
-/// row[segment] of each lane.
-template <TableKind kKind>
-HWY_INLINE Lanes look_up(LaneTag d, const Classifier& c, int row,
-                         hn::Vec<hn::RebindToSigned<LaneTag>> segment) {
-  const float* const entries = row_of<kKind>(c, row);
-  if constexpr (kKind == TableKind::one_segment) {
-    return hn::Set(d, entries[0]);
-  } else if constexpr (kKind == TableKind::one_vector) {
-    return hn::TableLookupLanes(hn::Load(d, entries), hn::IndicesFromVec(d, segment));
-  } else if constexpr (kKind == TableKind::two_vectors) {
-#if HWY_TARGET <= HWY_AVX3
-    return Lanes{_mm512_permutex2var_ps(hn::Load(d, entries).raw, segment.raw,
-                                        hn::Load(d, entries + num_lanes).raw)};
-#endif
-  } else {
-    return hn::GatherIndex(d, entries, segment);
-  }
-}
-
-template <TableKind kKind>
-HWY_INLINE TablePlace find_segment(LaneTag d, const Classifier& c, Lanes argument) {
-  const hn::RebindToSigned<LaneTag> di;
-  auto segment = hn::Zero(di);
-  const float* const begins = row_of<kKind>(c, Classifier::begin);
-  if (kKind != TableKind::one_segment && c.inverse_spacing > 0) {
-    // Named colour maps are evenly spaced.
-    const Lanes from_begin =
-        hn::Mul(hn::Sub(argument, hn::Set(d, begins[0])), hn::Set(d, c.inverse_spacing));
-    const Lanes place =
-        hn::Min(hn::Max(from_begin, hn::Zero(d)), hn::Set(d, static_cast<float>(c.num_segments)));
-    segment = hn::Min(hn::ConvertTo(di, place), hn::Set(di, c.num_segments - 1));
-    return {segment, hn::Sub(place, hn::ConvertTo(d, segment))};
-  }
-  if (kKind != TableKind::one_segment && c.num_segments <= 2 * max_lanes) {
-    for (int s = 1; s < c.num_segments; ++s) {
-      const auto behind = hn::Ge(argument, hn::Set(d, begins[s]));
-      segment = hn::Sub(segment, hn::VecFromMask(di, hn::RebindMask(di, behind)));
-    }
-  } else if constexpr (kKind == TableKind::many) {
-    // Bisection: the last segment whose begin is not above the argument.
-    int span = 1;
-    while (span < c.num_segments) span *= 2;
-    for (span /= 2; span > 0; span /= 2) {
-      const auto candidate =
-          hn::Min(hn::Add(segment, hn::Set(di, span)), hn::Set(di, c.num_segments - 1));
-      const auto behind = hn::Ge(argument, hn::GatherIndex(d, begins, candidate));
-      segment = hn::IfThenElse(hn::RebindMask(di, behind), candidate, segment);
-    }
-  }
-  const Lanes begin = look_up<kKind>(d, c, Classifier::begin, segment);
-  const Lanes inverse_width = look_up<kKind>(d, c, Classifier::inverse_width, segment);
-  const Lanes fraction = hn::Mul(hn::Sub(argument, begin), inverse_width);
-  return {segment, hn::Min(hn::Max(fraction, hn::Zero(d)), hn::Set(d, 1.0f))};
-}
-
-/// Red, green, blue (0 to 2) or extinction times step (3) at a place of the table.
-template <TableKind kKind>
-HWY_INLINE Lanes table_value(LaneTag d, const Classifier& c, int i, const TablePlace& place) {
-  return hn::MulAdd(place.fraction, look_up<kKind>(d, c, Classifier::rise + i, place.segment),
-                    look_up<kKind>(d, c, Classifier::base + i, place.segment));
-}
-
-/// The classifier's argument for the buffer's values. Finite also where there is no logarithm, so
-/// that it lies above a Visibility::above of -infinity and a flat segment makes no NaN of it.
-HWY_INLINE Lanes argument_of(LaneTag d, const Classifier& c, Lanes value) {
-  if (!c.log_scale) return value;
-  const Lanes tiny = hn::Set(d, std::numeric_limits<float>::min());
-  const Lanes logarithm = hn::Add(hn::Log10(d, hn::Max(value, tiny)), hn::Set(d, c.log_shift));
-  return hn::IfThenElse(hn::Ge(value, tiny), logarithm,
-                        hn::Set(d, std::numeric_limits<float>::lowest()));
-}
-
-/// x^power for x in [0, 1], power > 0.
-HWY_INLINE Lanes power_of(LaneTag d, Lanes x, float power) {
-  // Whole numbers are the usual case: x^32 is five multiplications.
-  const auto whole = static_cast<unsigned>(std::min(power, 1024.0f));
-  if (static_cast<float>(whole) == power) {
-    Lanes result = hn::Set(d, 1.0f);
-    for (unsigned bits = whole; bits != 0; bits >>= 1) {
-      if ((bits & 1) != 0) result = hn::Mul(result, x);
-      x = hn::Mul(x, x);
-    }
-    return result;
-  }
-  const Lanes tiny = hn::Set(d, std::numeric_limits<float>::min());
-  const Lanes exponent = hn::Mul(hn::Set(d, power), hn::Log(d, hn::Max(x, tiny)));
-  return hn::IfThenZeroElse(hn::Lt(x, tiny), hn::Exp(d, hn::Max(exponent, hn::Set(d, -86.0f))));
-}
-
-/// 1 / sqrt(x), relative error below 4e-7; 0 for x = 0 and whatever is too small to be told from
-/// it.
-HWY_INLINE Lanes inverse_sqrt(LaneTag d, Lanes x) {
-  const Lanes guess = hn::ApproximateReciprocalSqrt(x);
-  // One step of Newton's method.
-  const Lanes half = hn::Mul(hn::Mul(hn::Set(d, 0.5f), x), guess);
-  const Lanes better = hn::Mul(guess, hn::NegMulAdd(half, guess, hn::Set(d, 1.5f)));
-  return hn::IfThenElseZero(hn::Gt(x, hn::Set(d, 1e-36f)), better);
-}
-
-/// Light on the samples of a field: factor on the colour, and what is added to it.
-struct Light {
-  Lanes factor, highlight;
-};
-
-/// Two-sided Phong lighting (design of Motes, docs/field.md). `channels` is the field's channel 0;
-/// `to_eye` the unit vectors towards the eye.
-HWY_INLINE Light light_field(LaneTag d, const ShadingConstants& shading, const SampleLayout& layout,
-                             float min_radius, const float* channels, const Lanes to_eye[3]) {
-  const std::size_t lanes = hn::Lanes(d);
-  Lanes g[3];
-  for (std::size_t i = 0; i < 3; ++i) g[i] = hn::Load(d, channels + (1 + i) * lanes);
-  const Lanes norm_sq = hn::MulAdd(g[0], g[0], hn::MulAdd(g[1], g[1], hn::Mul(g[2], g[2])));
-  Lanes inverse_norm = inverse_sqrt(d, norm_sq);
-  // Where kernels cancel there is no normal.
-  const Lanes absolute = hn::Abs(hn::Load(
-      d, channels +
-             (layout.absolute ? static_cast<std::size_t>(layout.absolute_channel()) * lanes : 0)));
-  const Lanes norm = hn::Mul(norm_sq, inverse_norm);
-  const LaneMask has_normal =
-      hn::Ge(hn::Mul(norm, hn::Set(d, min_radius)), hn::Mul(hn::Set(d, 1e-6f), absolute));
-  inverse_norm = hn::IfThenElseZero(has_normal, inverse_norm);
-
-  const auto along = [&](const Lanes v[3]) HWY_ATTR {
-    const Lanes sum = hn::MulAdd(g[0], v[0], hn::MulAdd(g[1], v[1], hn::Mul(g[2], v[2])));
-    return hn::Min(hn::Abs(hn::Mul(sum, inverse_norm)), hn::Set(d, 1.0f));
-  };
-  Lanes n_l, n_h;
-  if (shading.headlight) {
-    n_l = n_h = along(to_eye);
-  } else {
-    Lanes l[3], h[3];
-    for (int i = 0; i < 3; ++i) {
-      l[i] = hn::Set(d, shading.light[i]);
-      h[i] = hn::Add(l[i], to_eye[i]);
-    }
-    const Lanes h_scale =
-        inverse_sqrt(d, hn::MulAdd(h[0], h[0], hn::MulAdd(h[1], h[1], hn::Mul(h[2], h[2]))));
-    for (Lanes& component : h) component = hn::Mul(component, h_scale);
-    n_l = along(l);
-    n_h = along(h);
-  }
-  return {hn::MulAdd(hn::Set(d, shading.diffuse), n_l, hn::Set(d, shading.ambient)),
-          hn::Mul(hn::Set(d, shading.specular), power_of(d, n_h, shading.shininess))};
-}
 
 /// The samples of a slab: [sample][field][channel][lane].
 struct SlabSamples {
@@ -230,193 +39,190 @@ struct SlabSamples {
 /// Samples of a slab, at most: a bit each.
 inline constexpr int max_slab = 64;
 
-/// A field at a sample that some ray may see.
-struct VisibleSample {
-  std::uint16_t sample;  ///< of the slab
-  std::uint16_t field;
-};
+/// Samples of a slab that some ray may see, the next few.
+struct SampleChunk {
+  std::array<int, samples_at_once> sample;
+  std::size_t count = 0;
 
-/// The visible samples of the only field, one after the other.
-struct OneFieldSamples {
-  static constexpr bool one_field = true;
-  std::uint64_t bits;  ///< bit i: sample i
-
-  bool empty() const { return bits == 0; }
-  VisibleSample front() const { return {static_cast<std::uint16_t>(std::countr_zero(bits)), 0}; }
-  void pop() { bits &= bits - 1; }
-  /// No other field of the sample follows.
-  bool is_last_field(VisibleSample) const { return true; }
-};
-
-/// The visible samples of several fields, at each sample in their order.
-struct ManyFieldsSamples {
-  static constexpr bool one_field = false;
-  const VisibleSample *next, *end;
-
-  bool empty() const { return next == end; }
-  VisibleSample front() const { return *next; }
-  void pop() { ++next; }
-  bool is_last_field(VisibleSample one) const { return empty() || next->sample != one.sample; }
-};
-
-/// Lists the samples whose bits are set, bit i of visible[f] being sample i of field f; `out` has
-/// room for one more than all.
-inline ManyFieldsSamples list_visible(std::size_t num_fields, const std::uint64_t* visible,
-                                      VisibleSample* out) {
-  std::uint64_t any = 0;
-  for (std::size_t f = 0; f < num_fields; ++f) any |= visible[f];
-  VisibleSample* next = out;
-  for (; any != 0; any &= any - 1) {
-    const int i = std::countr_zero(any);
-    // Without branches, which nobody could predict.
-    for (std::size_t f = 0; f < num_fields; ++f) {
-      *next = {static_cast<std::uint16_t>(i), static_cast<std::uint16_t>(f)};
-      next += visible[f] >> i & 1;
+  /// Takes them out of `bits`, bit i being sample i.
+  explicit SampleChunk(std::uint64_t& bits) {
+    for (; count < samples_at_once && bits != 0; bits &= bits - 1) {
+      sample[count++] = std::countr_zero(bits);
     }
-  }
-  return {out, next};
-}
-
-/// What a field adds to rays at one sample.
-struct Contribution {
-  Lanes opacity;
-  Lanes color[3];  ///< lit; not weighted by the opacity
-};
-
-/// Colours of a block's rays so far.
-struct BlockColors {
-  Lanes color[3], alpha;
-
-  /// Adds one field's part of a sample, whose opacity is 0 where there is none. Listing 1 of the
-  /// paper.
-  HWY_INLINE void composite(LaneTag d, Lanes sample_opacity, const Lanes* sample_color) {
-    const Lanes transparency = hn::Sub(hn::Set(d, 1.0f), alpha);
-    const Lanes weight = hn::Mul(transparency, sample_opacity);
-    color[0] = hn::MulAdd(weight, sample_color[0], color[0]);
-    color[1] = hn::MulAdd(weight, sample_color[1], color[1]);
-    color[2] = hn::MulAdd(weight, sample_color[2], color[2]);
-    // Not alpha + weight: rays wait for their alpha, and this is one operation less.
-    alpha = hn::MulAdd(transparency, sample_opacity, alpha);
   }
 };
 
 /// Rays of a block on their way through a slab, samples counted from its begin.
 struct BlockRays {
   Lanes first, last;
-  bool any_ended = false;  ///< in this slab
+  LaneMask alive;         ///< have samples in the slab and have not ended
+  Lanes color[3], alpha;  ///< so far
+  bool any_ended = false;
 
-  HWY_INLINE LaneMask live_at(Lanes index) const {
-    return hn::And(hn::Le(first, index), hn::Le(index, last));
+  /// Adds a field's part of a sample to `rays`. Listing 1 of the paper.
+  HWY_INLINE void composite(LaneTag d, LaneMask rays, Lanes opacity, Lanes r, Lanes g, Lanes b) {
+    const Lanes weight =
+        hn::IfThenElseZero(rays, hn::Mul(hn::Sub(hn::Set(d, 1.0f), alpha), opacity));
+    color[0] = hn::MulAdd(weight, r, color[0]);
+    color[1] = hn::MulAdd(weight, g, color[1]);
+    color[2] = hn::MulAdd(weight, b, color[2]);
+    alpha = hn::Add(alpha, weight);
   }
-  HWY_INLINE void end_at(LaneMask ends, Lanes index) {
-    last = hn::IfThenElse(ends, index, last);
+
+  /// Ends rays that are opaque enough after all fields of a sample; false if none goes on.
+  HWY_INLINE bool end_opaque(LaneTag d, Lanes termination, int sample) {
+    const LaneMask ends = hn::And(alive, hn::Gt(alpha, termination));
+    if (HWY_LIKELY(hn::AllFalse(d, ends))) return true;
+    last = hn::IfThenElse(ends, hn::Set(d, static_cast<float>(sample)), last);
+    alive = hn::AndNot(ends, alive);
     any_ended = true;
+    return !hn::AllFalse(d, alive);
+  }
+
+  HWY_INLINE LaneMask alive_at(LaneTag d, int sample) const {
+    const Lanes index = hn::Set(d, static_cast<float>(sample));
+    return hn::And(alive, hn::And(hn::Le(first, index), hn::Le(index, last)));
   }
 };
 
-/// What a block's samples are classified and lit with.
-struct BlockShading {
-  const std::vector<Classifier>& classifiers;
-  const ShadingConstants& constants;
-  const SampleLayout& layout;
-  Lanes length;
-  Lanes to_eye[3];  ///< with gradients
-
-  template <bool kGradients, TableKind kKind>
-  HWY_INLINE void classify_as(LaneTag d, std::size_t field, const float* channels,
-                              Contribution& out) const {
-    const Classifier& c = classifiers[field];
-    const Lanes argument = argument_of(d, c, hn::Load(d, channels));
-    const TablePlace place = find_segment<kKind>(d, c, argument);
-    const bool may_exceed_one = c.max_depth * constants.max_ray_length > 1;
-    out.opacity = opacity(d, hn::Mul(table_value<kKind>(d, c, 3, place), length), may_exceed_one);
-    out.color[0] = table_value<kKind>(d, c, 0, place);
-    out.color[1] = table_value<kKind>(d, c, 1, place);
-    out.color[2] = table_value<kKind>(d, c, 2, place);
-    if constexpr (kGradients) {
-      const Light light =
-          light_field(d, constants, layout, constants.min_radius[field], channels, to_eye);
-      for (Lanes& channel : out.color) {
-        channel = hn::MulAdd(channel, light.factor, light.highlight);
-      }
-    }
-  }
-};
-
-/// Adds the samples of a source. Each is a long chain of operations: two side by side keep the
-/// processor busy.
-template <bool kGradients, TableKind kKind, class Source>
-HWY_INLINE void add_samples(LaneTag d, const BlockShading& shading, const SlabSamples& samples,
-                            Source source, BlockRays& rays, BlockColors& colors) {
-  constexpr float no_sample = std::numeric_limits<float>::max();
+/// Adds the visible samples of the only field; bit i of `visible` is sample i. `zero_shows`:
+/// something may be seen where there is no kernel, so that a ray's first and last sample matter;
+/// else samples outside of the volume show nothing by themselves.
+template <bool kGradients, bool kPlain, TableKind kKind>
+HWY_INLINE void add_field(LaneTag d, const BlockShading& shading, const SlabSamples& samples,
+                          bool zero_shows, std::uint64_t visible, BlockRays& rays_out) {
+  BlockRays rays = rays_out;
   const Lanes termination = hn::Set(d, shading.constants.termination_opacity);
-  const auto classify = [&](VisibleSample at, Contribution& out) HWY_ATTR {
-    const std::size_t field = Source::one_field ? 0 : at.field;
-    shading.classify_as<kGradients, kKind>(d, field, samples.at(at.sample, field), out);
-  };
-  while (!source.empty()) {
-    const VisibleSample one = source.front();
-    source.pop();
-    const bool ends_sample = source.is_last_field(one), is_pair = !source.empty();
-    const VisibleSample other = is_pair ? source.front() : one;
-    if (is_pair) source.pop();
-    const Lanes index = hn::Set(d, static_cast<float>(one.sample));
-    const Lanes other_index = hn::Set(d, is_pair ? static_cast<float>(other.sample) : no_sample);
-    const LaneMask live = rays.live_at(index), other_live = rays.live_at(other_index);
-    Contribution a, b;
-    classify(one, a);
-    classify(other, b);
-    colors.composite(d, hn::IfThenElseZero(live, a.opacity), a.color);
-    BlockColors both = colors;
-    both.composite(d, hn::IfThenElseZero(other_live, b.opacity), b.color);
-    // After all fields of a sample rays that are opaque enough end: seldom, so only if one may it
-    // is asked at which of the two samples.
-    const LaneMask opaque = hn::Gt(both.alpha, termination);
-    if (HWY_UNLIKELY(!hn::AllFalse(d, hn::And(hn::Or(live, other_live), opaque)))) {
-      LaneMask goes_on = other_live;
-      if (ends_sample) {
-        const LaneMask ends = hn::And(live, hn::Gt(colors.alpha, termination));
-        rays.end_at(ends, index);
-        goes_on = hn::AndNot(ends, other_live);
-      }
-      both = colors;
-      both.composite(d, hn::IfThenElseZero(goes_on, b.opacity), b.color);
-      if (is_pair && source.is_last_field(other)) {
-        rays.end_at(hn::And(goes_on, hn::Gt(both.alpha, termination)), other_index);
-      }
-      const float next = source.empty() ? no_sample : static_cast<float>(source.front().sample);
-      if (hn::AllFalse(d, hn::Ge(rays.last, hn::Set(d, next)))) source = {};
+  // False if no ray goes on.
+  const auto add_chunk = [&]<std::size_t N>(const SampleChunk& chunk) HWY_ATTR {
+    std::array<const float*, N> channels;
+    for (std::size_t n = 0; n < N; ++n) {
+      channels[n] = samples.at(chunk.sample[std::min(n, chunk.count - 1)], 0);
     }
-    colors = both;
+    Contributions<N> out;
+    classify<kGradients, kPlain, kKind>(d, shading, 0, channels, out);
+    for (std::size_t n = 0; n < N; ++n) {
+      if (n >= chunk.count) break;
+      const LaneMask add =
+          HWY_UNLIKELY(zero_shows) ? rays.alive_at(d, chunk.sample[n]) : rays.alive;
+      rays.composite(d, add, out.opacity[n], out.color[0][n], out.color[1][n], out.color[2][n]);
+      if (!rays.end_opaque(d, termination, chunk.sample[n])) return false;
+    }
+    return true;
+  };
+  while (visible != 0) {
+    const SampleChunk chunk(visible);
+    const bool go_on = chunk.count > samples_at_once / 2
+                           ? add_chunk.template operator()<samples_at_once>(chunk)
+                           : add_chunk.template operator()<samples_at_once / 2>(chunk);
+    if (!go_on) break;
+  }
+  rays_out = rays;
+}
+
+/// What a field adds at a sample, on its way from classification to compositing.
+struct StoredContribution {
+  alignas(64) float opacity[max_lanes], r[max_lanes], g[max_lanes], b[max_lanes];
+};
+
+/// Classifies a field at those samples of a chunk where it may be seen, into `out`, an element a
+/// sample of the chunk.
+template <bool kGradients, bool kPlain, TableKind kKind>
+HWY_INLINE void classify_chunk(LaneTag d, const BlockShading& shading, const SlabSamples& samples,
+                               std::size_t field, std::uint64_t visible, const SampleChunk& chunk,
+                               StoredContribution* out) {
+  std::array<std::size_t, samples_at_once> members;
+  std::size_t count = 0;
+  for (std::size_t n = 0; n < chunk.count; ++n) {
+    members[count] = n;
+    count += visible >> chunk.sample[n] & 1;
+  }
+  const auto classify_some = [&]<std::size_t N>(std::size_t begin) HWY_ATTR {
+    std::array<const float*, N> channels;
+    for (std::size_t n = 0; n < N; ++n) {
+      channels[n] = samples.at(chunk.sample[members[std::min(begin + n, count - 1)]], field);
+    }
+    Contributions<N> some;
+    classify<kGradients, kPlain, kKind>(d, shading, field, channels, some);
+    for (std::size_t n = 0; n < N && begin + n < count; ++n) {
+      StoredContribution& each = out[members[begin + n]];
+      hn::Store(some.opacity[n], d, each.opacity);
+      hn::Store(some.color[0][n], d, each.r);
+      hn::Store(some.color[1][n], d, each.g);
+      hn::Store(some.color[2][n], d, each.b);
+    }
+  };
+  if (count > 2) {
+    classify_some.template operator()<samples_at_once>(0);
+  } else if (count > 0) {
+    classify_some.template operator()<2>(0);
   }
 }
 
-/// Adds the samples whose bits are set, as list_visible() takes them.
-template <bool kGradients, TableKind kKind>
-HWY_INLINE void add_visible(LaneTag d, const BlockShading& shading, const SlabSamples& samples,
-                            const std::uint64_t* visible, BlockRays& rays, BlockColors& colors) {
+/// The same for several fields; bit i of visible[f] is sample i of field f.
+template <bool kGradients, bool kPlain, TableKind kKind>
+HWY_INLINE void add_fields(LaneTag d, const BlockShading& shading, const SlabSamples& samples,
+                           bool zero_shows, const std::uint64_t* visible, BlockRays& rays_out) {
+  BlockRays rays = rays_out;
+  const Lanes termination = hn::Set(d, shading.constants.termination_opacity);
   const std::size_t num_fields = shading.classifiers.size();
-  if (num_fields == 1) {
-    add_samples<kGradients, kKind>(d, shading, samples, OneFieldSamples{visible[0]}, rays, colors);
+  static thread_local AlignedVector<StoredContribution> stored(max_fields * samples_at_once);
+  StoredContribution* const contributions = stored.data();
+  std::uint64_t left = 0;
+  for (std::size_t f = 0; f < num_fields; ++f) left |= visible[f];
+  while (left != 0) {
+    const SampleChunk chunk(left);
+    for (std::size_t f = 0; f < num_fields; ++f) {
+      classify_chunk<kGradients, kPlain, kKind>(d, shading, samples, f, visible[f], chunk,
+                                                contributions + f * samples_at_once);
+    }
+    for (std::size_t n = 0; n < chunk.count; ++n) {
+      const LaneMask add =
+          HWY_UNLIKELY(zero_shows) ? rays.alive_at(d, chunk.sample[n]) : rays.alive;
+      for (std::size_t f = 0; f < num_fields; ++f) {
+        if ((visible[f] >> chunk.sample[n] & 1) == 0) continue;
+        const StoredContribution& each = contributions[f * samples_at_once + n];
+        rays.composite(d, add, hn::Load(d, each.opacity), hn::Load(d, each.r), hn::Load(d, each.g),
+                       hn::Load(d, each.b));
+      }
+      if (!rays.end_opaque(d, termination, chunk.sample[n])) {
+        left = 0;
+        break;
+      }
+    }
+  }
+  rays_out = rays;
+}
+
+template <bool kGradients, bool kPlain, TableKind kKind>
+HWY_NOINLINE void add_visible(LaneTag d, const BlockShading& shading, const SlabSamples& samples,
+                              bool zero_shows, const std::uint64_t* visible, BlockRays& rays) {
+  if (shading.classifiers.size() == 1) {
+    add_field<kGradients, kPlain, kKind>(d, shading, samples, zero_shows, visible[0], rays);
   } else {
-    VisibleSample list[max_slab * max_fields + 1];
-    add_samples<kGradients, kKind>(d, shading, samples, list_visible(num_fields, visible, list),
-                                   rays, colors);
+    add_fields<kGradients, kPlain, kKind>(d, shading, samples, zero_shows, visible, rays);
   }
 }
 
-/// Composites the samples of `slab`, at most max_slab (field 0, channel 0 of its first at
-/// `first_sample`), into the rays' colours. Bit i of visible[f]: field f may be seen at sample i. A
-/// ray that reaches the termination opacity ends. Hot: nothing is checked.
+/// Composites the samples of `slab`, at most max_slab, into the rays' colours. Bit i of visible[f]:
+/// field f may be seen at sample i. A ray that reaches the termination opacity ends. Hot: nothing
+/// is checked.
 template <bool kGradients>
-HWY_NOINLINE void integrate_slab(const std::vector<Classifier>& classifiers,
-                                 const ShadingConstants& constants, const Slab& slab,
-                                 const SampleLayout& layout, const float* first_sample,
-                                 const std::uint64_t* visible, RayState& rays) {
+HWY_INLINE void integrate_slab(const std::vector<Classifier>& classifiers,
+                               const ShadingConstants& constants, const Slab& slab,
+                               const SampleLayout& layout, const SlabSamples& samples,
+                               const std::uint64_t* visible, RayState& rays) {
   const LaneTag d;
-  const SlabSamples samples{first_sample, layout.floats_per_sample(),
-                            static_cast<std::size_t>(layout.channels() * layout.lanes)};
   const Lanes slab_first = hn::Set(d, static_cast<float>(slab.first));
+  BlockRays block;
+  block.first = hn::Sub(hn::Load(d, rays.first), slab_first);
+  block.last = hn::Sub(hn::Load(d, rays.last), slab_first);
+  block.alive = hn::And(hn::Le(block.first, hn::Set(d, static_cast<float>(slab.count - 1))),
+                        hn::Ge(block.last, hn::Zero(d)));
+  block.color[0] = hn::Load(d, rays.r);
+  block.color[1] = hn::Load(d, rays.g);
+  block.color[2] = hn::Load(d, rays.b);
+  block.alpha = hn::Load(d, rays.a);
   const Lanes length = hn::Load(d, rays.length);
   BlockShading shading{classifiers, constants, layout, length, {length, length, length}};
   if constexpr (kGradients) {
@@ -424,39 +230,46 @@ HWY_NOINLINE void integrate_slab(const std::vector<Classifier>& classifiers,
     shading.to_eye[0] = hn::Mul(hn::Load(d, rays.direction_x), shading.to_eye[2]);
     shading.to_eye[1] = hn::Mul(hn::Load(d, rays.direction_y), shading.to_eye[2]);
   }
-  BlockRays state{hn::Sub(hn::Load(d, rays.first), slab_first),
-                  hn::Sub(hn::Load(d, rays.last), slab_first)};
-  BlockColors colors{{hn::Load(d, rays.r), hn::Load(d, rays.g), hn::Load(d, rays.b)},
-                     hn::Load(d, rays.a)};
-  const TableKind kind = kind_of(classifiers);
-  if (kind == TableKind::one_segment) {
-    add_visible<kGradients, TableKind::one_segment>(d, shading, samples, visible, state, colors);
-  } else if (kind == TableKind::one_vector) {
-    add_visible<kGradients, TableKind::one_vector>(d, shading, samples, visible, state, colors);
-  } else if (kind == TableKind::two_vectors) {
-    if constexpr (HWY_TARGET <= HWY_AVX3) {
-      add_visible<kGradients, TableKind::two_vectors>(d, shading, samples, visible, state, colors);
-    }
-  } else {
-    add_visible<kGradients, TableKind::many>(d, shading, samples, visible, state, colors);
+  const bool zero_shows =
+      std::any_of(classifiers.begin(), classifiers.end(),
+                  [](const Classifier& c) { return c.visibility.shows_zero(); });
+  const bool plain = is_plain(classifiers, constants);
+  const auto add = [&]<TableKind kKind>() HWY_ATTR {
+    const auto add_them =
+        plain ? &add_visible<kGradients, true, kKind> : &add_visible<kGradients, false, kKind>;
+    add_them(d, shading, samples, zero_shows, visible, block);
+  };
+  switch (kind_of(classifiers)) {
+    case TableKind::one_segment:
+      add.template operator()<TableKind::one_segment>();
+      break;
+    case TableKind::one_vector:
+      add.template operator()<TableKind::one_vector>();
+      break;
+    case TableKind::two_vectors:
+      if constexpr (HWY_TARGET <= HWY_AVX3) add.template operator()<TableKind::two_vectors>();
+      break;
+    case TableKind::many:
+      add.template operator()<TableKind::many>();
+      break;
   }
-  if (state.any_ended) {
-    rays.end = slab.first + static_cast<int>(hn::GetLane(hn::MaxOfLanes(d, state.last)));
+  if (block.any_ended) {
+    rays.end = slab.first + static_cast<int>(hn::GetLane(hn::MaxOfLanes(d, block.last)));
   }
-  hn::Store(colors.color[0], d, rays.r);
-  hn::Store(colors.color[1], d, rays.g);
-  hn::Store(colors.color[2], d, rays.b);
-  hn::Store(colors.alpha, d, rays.a);
-  hn::Store(hn::Add(state.last, slab_first), d, rays.last);
+  hn::Store(block.color[0], d, rays.r);
+  hn::Store(block.color[1], d, rays.g);
+  hn::Store(block.color[2], d, rays.b);
+  hn::Store(block.alpha, d, rays.a);
+  hn::Store(hn::Add(block.last, slab_first), d, rays.last);
 }
 
 inline void integrate(const std::vector<Classifier>& classifiers, const ShadingConstants& shading,
-                      const Slab& slab, const SampleLayout& layout, const float* first_sample,
+                      const Slab& slab, const SampleLayout& layout, const SlabSamples& samples,
                       const std::uint64_t* visible, RayState& rays) {
   if (layout.gradients) {
-    integrate_slab<true>(classifiers, shading, slab, layout, first_sample, visible, rays);
+    integrate_slab<true>(classifiers, shading, slab, layout, samples, visible, rays);
   } else {
-    integrate_slab<false>(classifiers, shading, slab, layout, first_sample, visible, rays);
+    integrate_slab<false>(classifiers, shading, slab, layout, samples, visible, rays);
   }
 }
 
@@ -474,8 +287,11 @@ inline void integrate_buffer(const std::vector<Classifier>& classifiers,
         visible[f] |= std::uint64_t{may_be_seen(d, values, classifiers[f].visibility)} << i;
       }
     }
-    integrate(classifiers, shading, {slab.first + begin, count}, buffer.layout(),
-              buffer.at(begin, 0), visible, rays);
+    const SampleLayout& layout = buffer.layout();
+    integrate(classifiers, shading, {slab.first + begin, count}, layout,
+              {buffer.at(begin, 0), layout.floats_per_sample(),
+               static_cast<std::size_t>(layout.channels() * layout.lanes)},
+              visible, rays);
   }
 }
 

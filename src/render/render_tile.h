@@ -30,6 +30,7 @@ struct FrameContext {
   Engine engine = Engine::coherent;
   bool gradients = false, absolute = false;  ///< channels of the samples
   int samples_per_pass = 32;                 ///< planes of a slab
+  bool count_inside = false;                 ///< see TileCounts; the sweep alone, without gradients
 };
 
 /// Pixels x to x + width - 1, y to y + height - 1.
@@ -40,11 +41,13 @@ struct Tile {
 struct TileCounts {
   std::uint64_t samples = 0;             ///< inside the volume's box, up to each ray's end
   std::uint64_t kernel_evaluations = 0;  ///< carried out, those outside the support included
+  std::uint64_t evaluations_inside = 0;  ///< of the support, if FrameContext::count_inside
   StageTicks stages;
 
   void add(const TileCounts& other) {
     samples += other.samples;
     kernel_evaluations += other.kernel_evaluations;
+    evaluations_inside += other.evaluations_inside;
     stages.add(other.stages);
   }
 };

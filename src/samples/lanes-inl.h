@@ -36,6 +36,14 @@ HWY_INLINE unsigned mask_bits(D d, hn::Mask<D> mask) {
   return (bytes[0] | static_cast<unsigned>(bytes[1]) << 8) & ((1u << hn::Lanes(d)) - 1);
 }
 
+/// first, first + 1, ... Highway's own goes through memory, number by number.
+HWY_INLINE hn::Vec<hn::RebindToUnsigned<LaneTag>> numbers_from(std::uint32_t first) {
+  alignas(64) static constexpr std::uint32_t from_zero[max_lanes] = {0, 1, 2,  3,  4,  5,  6,  7,
+                                                                     8, 9, 10, 11, 12, 13, 14, 15};
+  const hn::RebindToUnsigned<LaneTag> du;
+  return hn::Add(hn::Load(du, from_zero), hn::Set(du, first));
+}
+
 /// Something may be seen at one of a field's values.
 HWY_INLINE bool may_be_seen(LaneTag d, Lanes values, const Visibility& visibility) {
   return !hn::AllFalse(d, hn::And(hn::Gt(values, hn::Set(d, visibility.above)),

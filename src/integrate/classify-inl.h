@@ -1,0 +1,379 @@
+// Classifies and lights samples, some of one field side by side. Included once per instruction set.
+#if defined(MOTES_INTEGRATE_CLASSIFY_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef MOTES_INTEGRATE_CLASSIFY_INL_H_
+#undef MOTES_INTEGRATE_CLASSIFY_INL_H_
+#else
+#define MOTES_INTEGRATE_CLASSIFY_INL_H_
+#endif
+
+#include <hwy/contrib/math/math-inl.h>
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
+#include <limits>
+#include <vector>
+
+#include "integrate/classifier.h"
+#include "integrate/shading.h"
+#include "samples/lanes-inl.h"
+#include "samples/samples.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace motes {
+namespace HWY_NAMESPACE {
+
+/// Samples that are classified side by side. Each is a long chain of operations: taken step by step
+/// together they keep the processor busy. Fewer where there are half the registers.
+inline constexpr int samples_at_once = HWY_TARGET <= HWY_AVX3 ? 4 : 2;
+
+/// c[0] + c[1] x + ... for each of some x.
+template <std::size_t N, std::size_t M>
+HWY_INLINE std::array<Lanes, N> polynomial(LaneTag d, const float (&c)[M],
+                                           const std::array<Lanes, N>& x) {
+  std::array<Lanes, N> sum;
+  sum.fill(hn::Set(d, c[M - 1]));
+  for (std::size_t i = M - 1; i-- > 0;) {
+    const Lanes coefficient = hn::Set(d, c[i]);
+    for (std::size_t n = 0; n < N; ++n) sum[n] = hn::MulAdd(sum[n], x[n], coefficient);
+  }
+  return sum;
+}
+
+/// 1 - exp(-x) for x in [0, largest], relative error below 1e-7 (thin samples by the thousand must
+/// not drift). kPlain: `largest` is at most 1.
+template <bool kPlain, std::size_t N>
+HWY_INLINE void to_opacity(LaneTag d, float largest, std::array<Lanes, N>& x) {
+  // Minimax polynomials of (1 - exp(-x)) / x on [0, 1/8] and [0, 1].
+  constexpr float shorter[] = {9.999999848e-01f, -4.999960939e-01f, 1.665098696e-01f,
+                               -3.964177391e-02f};
+  constexpr float longer[] = {9.999999975e-01f,  -4.999997703e-01f, 1.666630980e-01f,
+                              -4.164557738e-02f, 8.273095536e-03f,  -1.298663742e-03f,
+                              1.283807181e-04f};
+  std::array<Lanes, N> thin =
+      largest <= 0.125f ? polynomial(d, shorter, x) : polynomial(d, longer, x);
+  for (std::size_t n = 0; n < N; ++n) thin[n] = hn::Mul(thin[n], x[n]);
+  if constexpr (!kPlain) {
+    for (std::size_t n = 0; n < N; ++n) {
+      const LaneMask is_thick = hn::Gt(x[n], hn::Set(d, 1.0f));
+      if (HWY_LIKELY(hn::AllFalse(d, is_thick))) continue;
+      const Lanes bounded = hn::Min(x[n], hn::Set(d, 80.0f));
+      const Lanes thick = hn::Sub(hn::Set(d, 1.0f), hn::Exp(d, hn::Neg(bounded)));
+      thin[n] = hn::IfThenElse(is_thick, thick, thin[n]);
+    }
+  }
+  x = thin;
+}
+
+/// How a table is read: a single segment is a broadcast, a row of one or two vectors a permutation
+/// (of two only with AVX-512), longer ones are gathered.
+enum class TableKind { one_segment, one_vector, two_vectors, many };
+
+/// The simplest that does for all of them.
+HWY_INLINE TableKind kind_of(const std::vector<Classifier>& classifiers) {
+  int most = 1;
+  for (const Classifier& c : classifiers) most = std::max(most, c.num_segments);
+  if (most == 1) return TableKind::one_segment;
+  if (most <= num_lanes) return TableKind::one_vector;
+  return HWY_TARGET <= HWY_AVX3 && most <= 2 * num_lanes ? TableKind::two_vectors : TableKind::many;
+}
+
+/// A row of the table. Known to the compiler where a row is one vector.
+template <TableKind kKind>
+HWY_INLINE const float* row_of(const Classifier& c, int row) {
+  if constexpr (kKind >= TableKind::two_vectors) return c.row(row);
+  return c.table.data() + row * max_lanes;
+}
+
+/// row[segment] of each lane.
+template <TableKind kKind>
+HWY_INLINE Lanes look_up(LaneTag d, const Classifier& c, int row,
+                         hn::Vec<hn::RebindToSigned<LaneTag>> segment) {
+  const float* const entries = row_of<kKind>(c, row);
+  if constexpr (kKind == TableKind::one_segment) {
+    return hn::Set(d, entries[0]);
+  } else if constexpr (kKind == TableKind::one_vector) {
+    return hn::TableLookupLanes(hn::Load(d, entries), hn::IndicesFromVec(d, segment));
+  } else if constexpr (kKind == TableKind::two_vectors) {
+#if HWY_TARGET <= HWY_AVX3
+    return Lanes{_mm512_permutex2var_ps(hn::Load(d, entries).raw, segment.raw,
+                                        hn::Load(d, entries + num_lanes).raw)};
+#endif
+  } else {
+    return hn::GatherIndex(d, entries, segment);
+  }
+}
+
+/// Where samples' arguments lie in a classifier's table.
+template <std::size_t N>
+struct TablePlaces {
+  std::array<hn::Vec<hn::RebindToSigned<LaneTag>>, N> segment;
+  std::array<Lanes, N> fraction;  ///< of the segment, in [0, 1]: clamped at the table's ends
+};
+
+/// Named colour maps are evenly spaced.
+template <std::size_t N>
+HWY_INLINE void place_evenly(LaneTag d, const Classifier& c, float begin,
+                             const std::array<Lanes, N>& argument, TablePlaces<N>& out) {
+  const hn::RebindToSigned<LaneTag> di;
+  const Lanes per_segment = hn::Set(d, c.inverse_spacing);
+  const Lanes first = hn::Set(d, -begin * c.inverse_spacing);
+  // Just short of the end, so that the last segment's end is no segment of its own.
+  const Lanes end = hn::Set(d, static_cast<float>(c.num_segments) * (1 - 0x1p-23f));
+  // Adding 1.5 * 2^23 rounds to an integer and leaves it in the low bits of the sum. Half a segment
+  // less rounds down; between two segments either will do.
+  const Lanes half = hn::Set(d, 0.5f), shifter = hn::Set(d, 12582912.0f);
+  for (std::size_t n = 0; n < N; ++n) {
+    const Lanes from_begin = hn::MulAdd(argument[n], per_segment, first);
+    const Lanes place = hn::Min(hn::Max(from_begin, hn::Zero(d)), end);
+    const Lanes sum = hn::Add(hn::Sub(place, half), shifter);
+    out.segment[n] = hn::And(hn::BitCast(di, sum), hn::Set(di, 0xffff));
+    out.fraction[n] = hn::Sub(place, hn::Sub(sum, shifter));
+  }
+}
+
+/// Bisection for long tables: the last segment whose begin is not above the argument.
+HWY_INLINE hn::Vec<hn::RebindToSigned<LaneTag>> bisect(LaneTag d, const Classifier& c,
+                                                       const float* begins, Lanes argument) {
+  const hn::RebindToSigned<LaneTag> di;
+  auto segment = hn::Zero(di);
+  int span = 1;
+  while (span < c.num_segments) span *= 2;
+  for (span /= 2; span > 0; span /= 2) {
+    const auto candidate =
+        hn::Min(hn::Add(segment, hn::Set(di, span)), hn::Set(di, c.num_segments - 1));
+    const auto behind = hn::Ge(argument, hn::GatherIndex(d, begins, candidate));
+    segment = hn::IfThenElse(hn::RebindMask(di, behind), candidate, segment);
+  }
+  return segment;
+}
+
+template <TableKind kKind, std::size_t N>
+HWY_INLINE TablePlaces<N> find_segments(LaneTag d, const Classifier& c,
+                                        const std::array<Lanes, N>& argument) {
+  const hn::RebindToSigned<LaneTag> di;
+  const float* const begins = row_of<kKind>(c, Classifier::begin);
+  TablePlaces<N> out;
+  if (kKind != TableKind::one_segment && c.inverse_spacing > 0) {
+    place_evenly(d, c, begins[0], argument, out);
+    return out;
+  }
+  out.segment.fill(hn::Zero(di));
+  if (kKind != TableKind::one_segment && c.num_segments <= 2 * max_lanes) {
+    for (int s = 1; s < c.num_segments; ++s) {
+      const Lanes begin = hn::Set(d, begins[s]);
+      for (std::size_t n = 0; n < N; ++n) {
+        const auto behind = hn::RebindMask(di, hn::Ge(argument[n], begin));
+        out.segment[n] = hn::Sub(out.segment[n], hn::VecFromMask(di, behind));
+      }
+    }
+  } else if constexpr (kKind == TableKind::many) {
+    for (std::size_t n = 0; n < N; ++n) out.segment[n] = bisect(d, c, begins, argument[n]);
+  }
+  for (std::size_t n = 0; n < N; ++n) {
+    const Lanes begin = look_up<kKind>(d, c, Classifier::begin, out.segment[n]);
+    const Lanes inverse_width = look_up<kKind>(d, c, Classifier::inverse_width, out.segment[n]);
+    const Lanes fraction = hn::Mul(hn::Sub(argument[n], begin), inverse_width);
+    out.fraction[n] = hn::Min(hn::Max(fraction, hn::Zero(d)), hn::Set(d, 1.0f));
+  }
+  return out;
+}
+
+/// Red, green, blue (0 to 2) or extinction times step (3) at places of the table.
+template <TableKind kKind, std::size_t N>
+HWY_INLINE void read_table(LaneTag d, const Classifier& c, int i, const TablePlaces<N>& places,
+                           std::array<Lanes, N>& out) {
+  for (std::size_t n = 0; n < N; ++n) {
+    out[n] = hn::MulAdd(places.fraction[n],
+                        look_up<kKind>(d, c, Classifier::rise + i, places.segment[n]),
+                        look_up<kKind>(d, c, Classifier::base + i, places.segment[n]));
+  }
+}
+
+/// The classifier's argument for a value of the buffer, with a logarithmic scale. Finite also where
+/// there is no logarithm, so that it lies above a Visibility::above of -infinity and a flat segment
+/// makes no NaN of it.
+HWY_NOINLINE Lanes logarithmic_argument(LaneTag d, const Classifier& c, Lanes value) {
+  const Lanes tiny = hn::Set(d, std::numeric_limits<float>::min());
+  const Lanes logarithm = hn::Add(hn::Log10(d, hn::Max(value, tiny)), hn::Set(d, c.log_shift));
+  return hn::IfThenElse(hn::Ge(value, tiny), logarithm,
+                        hn::Set(d, std::numeric_limits<float>::lowest()));
+}
+
+/// x^power for x in [0, 1], power > 0 no whole number.
+HWY_NOINLINE Lanes broken_power(LaneTag d, Lanes x, float power) {
+  const Lanes tiny = hn::Set(d, std::numeric_limits<float>::min());
+  const Lanes exponent = hn::Mul(hn::Set(d, power), hn::Log(d, hn::Max(x, tiny)));
+  return hn::IfThenZeroElse(hn::Lt(x, tiny), hn::Exp(d, hn::Max(exponent, hn::Set(d, -86.0f))));
+}
+
+/// Shininess that takes a few multiplications alone: x^32 is five.
+inline bool is_plain_power(float power) { return power <= 1024 && power == std::floor(power); }
+
+/// x^power for x in [0, 1], power > 0. kPlain: is_plain_power().
+template <bool kPlain, std::size_t N>
+HWY_INLINE void raise(LaneTag d, float power, std::array<Lanes, N>& x) {
+  if constexpr (!kPlain) {
+    if (!is_plain_power(power)) {
+      for (Lanes& each : x) each = broken_power(d, each, power);
+      return;
+    }
+  }
+  auto bits = static_cast<unsigned>(power);
+  for (; (bits & 1) == 0; bits >>= 1) {
+    for (Lanes& each : x) each = hn::Mul(each, each);
+  }
+  if (HWY_LIKELY(bits == 1)) return;
+  std::array<Lanes, N> square = x;
+  for (bits >>= 1; bits != 0; bits >>= 1) {
+    for (Lanes& each : square) each = hn::Mul(each, each);
+    if ((bits & 1) == 0) continue;
+    for (std::size_t n = 0; n < N; ++n) x[n] = hn::Mul(x[n], square[n]);
+  }
+}
+
+/// 1 / sqrt(x), relative error below 4e-7; anything finite for x = 0.
+HWY_INLINE Lanes inverse_sqrt(LaneTag d, Lanes x) {
+  const Lanes guess = hn::ApproximateReciprocalSqrt(hn::Max(x, hn::Set(d, 1e-36f)));
+  // One step of Newton's method.
+  const Lanes half = hn::Mul(hn::Mul(hn::Set(d, 0.5f), x), guess);
+  return hn::Mul(guess, hn::NegMulAdd(half, guess, hn::Set(d, 1.5f)));
+}
+
+/// What a block's samples are classified and lit with.
+struct BlockShading {
+  const std::vector<Classifier>& classifiers;
+  const ShadingConstants& constants;
+  const SampleLayout& layout;
+  Lanes length;     ///< of the rays' directions
+  Lanes to_eye[3];  ///< unit vectors, with gradients
+};
+
+/// Lit samples of a field: factor on the colour, and what is added to it.
+template <std::size_t N>
+struct Light {
+  std::array<Lanes, N> diffuse, specular;
+};
+
+/// Gradients of some samples of a field, and one over their norms; 0 where there is no normal.
+template <std::size_t N>
+struct Normals {
+  std::array<Lanes, N> x, y, z, inverse_norm;
+
+  HWY_INLINE void load(LaneTag d, const SampleLayout& layout, float min_radius,
+                       const std::array<const float*, N>& channels) {
+    // Where kernels cancel there is no normal: |gradient| min_radius < 1e-6 sum |phi|.
+    const auto absolute_at =
+        static_cast<std::size_t>(layout.absolute ? layout.absolute_channel() * num_lanes : 0);
+    const Lanes least = hn::Set(d, 1e-12f / (min_radius * min_radius));
+    for (std::size_t n = 0; n < N; ++n) {
+      x[n] = hn::Load(d, channels[n] + num_lanes);
+      y[n] = hn::Load(d, channels[n] + 2 * num_lanes);
+      z[n] = hn::Load(d, channels[n] + 3 * num_lanes);
+    }
+    for (std::size_t n = 0; n < N; ++n) {
+      const Lanes norm_sq = hn::MulAdd(x[n], x[n], hn::MulAdd(y[n], y[n], hn::Mul(z[n], z[n])));
+      const Lanes absolute = hn::Load(d, channels[n] + absolute_at);
+      const LaneMask has_normal =
+          hn::And(hn::Ge(norm_sq, hn::Mul(least, hn::Mul(absolute, absolute))),
+                  hn::Gt(norm_sq, hn::Set(d, 1e-36f)));
+      inverse_norm[n] = hn::IfThenElseZero(has_normal, inverse_sqrt(d, norm_sq));
+    }
+  }
+
+  /// Cosines of the angles with unit vectors, without their signs.
+  HWY_INLINE std::array<Lanes, N> along(LaneTag d, const Lanes v[3]) const {
+    std::array<Lanes, N> cosine;
+    for (std::size_t n = 0; n < N; ++n) {
+      const Lanes sum = hn::MulAdd(x[n], v[0], hn::MulAdd(y[n], v[1], hn::Mul(z[n], v[2])));
+      cosine[n] = hn::Min(hn::Abs(hn::Mul(sum, inverse_norm[n])), hn::Set(d, 1.0f));
+    }
+    return cosine;
+  }
+};
+
+/// Two-sided Phong lighting (docs/field.md). `channels`: the field's channel 0 of each sample.
+template <bool kPlain, std::size_t N>
+HWY_INLINE Light<N> light_samples(LaneTag d, const BlockShading& shading, std::size_t field,
+                                  const std::array<const float*, N>& channels) {
+  const ShadingConstants& constants = shading.constants;
+  Normals<N> normals;
+  normals.load(d, shading.layout, constants.min_radius[field], channels);
+  Light<N> light;
+  if (kPlain || constants.headlight) {
+    light.diffuse = light.specular = normals.along(d, shading.to_eye);
+  } else {
+    Lanes l[3], h[3];
+    for (int i = 0; i < 3; ++i) {
+      l[i] = hn::Set(d, constants.light[i]);
+      h[i] = hn::Add(l[i], shading.to_eye[i]);
+    }
+    const Lanes h_sq = hn::MulAdd(h[0], h[0], hn::MulAdd(h[1], h[1], hn::Mul(h[2], h[2])));
+    const Lanes h_scale =
+        hn::IfThenElseZero(hn::Gt(h_sq, hn::Set(d, 1e-36f)), inverse_sqrt(d, h_sq));
+    for (Lanes& component : h) component = hn::Mul(component, h_scale);
+    light.diffuse = normals.along(d, l);
+    light.specular = normals.along(d, h);
+  }
+  raise<kPlain>(d, constants.shininess, light.specular);
+  for (std::size_t n = 0; n < N; ++n) {
+    light.diffuse[n] =
+        hn::MulAdd(hn::Set(d, constants.diffuse), light.diffuse[n], hn::Set(d, constants.ambient));
+    light.specular[n] = hn::Mul(hn::Set(d, constants.specular), light.specular[n]);
+  }
+  return light;
+}
+
+/// What samples of a field add to their rays.
+template <std::size_t N>
+struct Contributions {
+  std::array<Lanes, N> opacity;
+  std::array<Lanes, N> color[3];  ///< lit; not weighted by the opacity
+};
+
+/// Nothing is needed that takes a call: no logarithm, no opacity of thick samples, no broken power,
+/// no light but that of the eye. Registers need not be kept for it then.
+inline bool is_plain(const std::vector<Classifier>& classifiers,
+                     const ShadingConstants& constants) {
+  return constants.headlight && is_plain_power(constants.shininess) &&
+         std::none_of(classifiers.begin(), classifiers.end(), [&](const Classifier& c) {
+           return c.log_scale || c.max_depth * constants.max_ray_length > 1;
+         });
+}
+
+/// `channels`: the field's channel 0 of each sample. kPlain: is_plain().
+template <bool kGradients, bool kPlain, TableKind kKind, std::size_t N>
+HWY_INLINE void classify(LaneTag d, const BlockShading& shading, std::size_t field,
+                         const std::array<const float*, N>& channels, Contributions<N>& out) {
+  const Classifier& c = shading.classifiers[field];
+  std::array<Lanes, N> argument;
+  for (std::size_t n = 0; n < N; ++n) argument[n] = hn::Load(d, channels[n]);
+  if constexpr (!kPlain) {
+    if (c.log_scale) {
+      for (Lanes& each : argument) each = logarithmic_argument(d, c, each);
+    }
+  }
+  const TablePlaces<N> places = find_segments<kKind>(d, c, argument);
+  read_table<kKind>(d, c, 3, places, out.opacity);
+  for (Lanes& depth : out.opacity) depth = hn::Mul(depth, shading.length);
+  to_opacity<kPlain>(d, c.max_depth * shading.constants.max_ray_length, out.opacity);
+  for (int i = 0; i < 3; ++i) read_table<kKind>(d, c, i, places, out.color[i]);
+  if constexpr (kGradients) {
+    const Light<N> light = light_samples<kPlain>(d, shading, field, channels);
+    for (auto& color : out.color) {
+      for (std::size_t n = 0; n < N; ++n) {
+        color[n] = hn::MulAdd(color[n], light.diffuse[n], light.specular[n]);
+      }
+    }
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace motes
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,270 @@
+// The loop around the sweep: an area of pixels slab by slab, front to back, sampling and
+// integrating a few planes at a time. Included once per instruction set.
+#if defined(MOTES_RENDER_RENDER_SWEEP_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef MOTES_RENDER_RENDER_SWEEP_INL_H_
+#undef MOTES_RENDER_RENDER_SWEEP_INL_H_
+#else
+#define MOTES_RENDER_RENDER_SWEEP_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <climits>
+#include <cstdint>
+#include <vector>
+
+#include "field/sweep-inl.h"
+#include "integrate/integrate-inl.h"
+#include "render/ray_packets.h"
+#include "render/ray_state-inl.h"
+#include "render/tile_output-inl.h"
+#include "samples/area_buffer.h"
+#include "samples/lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace motes {
+namespace HWY_NAMESPACE {
+
+/// What the sweep of an area works with: a few MB, kept by each thread.
+struct SweepMemory {
+  GatheredKernels gathered;
+  PlaneKernels plane_kernels;
+  AreaBuffer buffer;
+  std::vector<std::uint64_t> visible;  ///< of a group: [block][field], a bit a plane
+  static constexpr int num_blocks = AreaBuffer::groups * AreaBuffer::groups * group_blocks;
+  std::array<RayState, num_blocks> blocks;         ///< row of groups by row, as in AreaBuffer
+  std::array<SampleIndex, num_blocks> begin, end;  ///< of each block's rays, as in RayState
+};
+
+/// Number of a group's first block.
+constexpr std::size_t first_block(int row, int column) {
+  return static_cast<std::size_t>((row * AreaBuffer::groups + column) * group_blocks);
+}
+
+/// Bytes of samples that are worked on together: they stay in the second-level cache.
+inline constexpr std::size_t batch_bytes = 1400 << 10;
+
+/// Planes that are sampled before they are integrated.
+inline int planes_at_once(const FrameContext& context, const SampleLayout& layout) {
+  const std::size_t plane_bytes =
+      layout.floats_per_sample() * sizeof(float) *
+      static_cast<std::size_t>(AreaBuffer::padded * AreaBuffer::padded * group_blocks);
+  return std::clamp(static_cast<int>(batch_bytes / plane_bytes), 1,
+                    std::min(context.samples_per_pass, AreaBuffer::max_planes));
+}
+
+/// An area being rendered.
+class AreaSweep {
+ public:
+  AreaSweep(const FrameContext& context, const Tile& area, SweepMemory& memory, TileCounts& counts)
+      : context_(context),
+        constants_(make_constants(*context.kernels)),
+        area_(area),
+        bounds_(make_ray_bounds(context, area.x, area.y, AreaBuffer::size, AreaBuffer::size)),
+        layout_(make_layout(context)),
+        field_floats_(static_cast<std::size_t>(layout_.channels() * layout_.lanes)),
+        planes_at_once_(planes_at_once(context, layout_)),
+        zero_is_transparent_(
+            std::all_of(context.classifiers.begin(), context.classifiers.end(),
+                        [](const Classifier& c) { return !c.visibility.shows_zero(); })),
+        memory_(memory),
+        counts_(counts),
+        clock_(counts.stages) {
+    memory.visible.resize(group_blocks * context.classifiers.size());
+  }
+
+  void run(Framebuffer& image) {
+    start();
+    const int planes = std::min(context_.samples_per_pass, AreaBuffer::max_planes);
+    for (SampleIndex begin = begin_; begin <= end_; begin += planes) {
+      sweep_slab({begin, std::min(end_ - begin + 1, planes)});
+    }
+    finish(image);
+  }
+
+ private:
+  template <class Visit>
+  void for_each_block(Visit&& visit) {
+    for (int row = 0; row < AreaBuffer::groups; ++row) {
+      for (int column = 0; column < AreaBuffer::groups; ++column) {
+        for (int v = 0; v < group_blocks; ++v) {
+          visit(first_block(row, column) + static_cast<std::size_t>(v),
+                area_.x + column * AreaBuffer::group_size,
+                area_.y + row * AreaBuffer::group_size + v * block_rows);
+        }
+      }
+    }
+  }
+
+  void start() {
+    begin_ = INT_MAX;
+    end_ = -1;
+    for_each_block([&](std::size_t b, int x, int y) {
+      RayState& rays = memory_.blocks[b];
+      start_rays(context_, x, y, AreaBuffer::group_size, block_rows, rays);
+      memory_.begin[b] = rays.begin;
+      memory_.end[b] = rays.end;
+      begin_ = std::min(begin_, rays.begin);
+      end_ = std::max(end_, rays.end);
+    });
+    clock_.lap(Stage::setup);
+  }
+
+  void finish(Framebuffer& image) {
+    for_each_block([&](std::size_t b, int x, int y) {
+      counts_.samples += count_samples(memory_.blocks[b]);
+      store_pixels(memory_.blocks[b], x, y, AreaBuffer::group_size, image);
+    });
+    clock_.lap(Stage::setup);
+  }
+
+  /// Finds the groups that have rays under way on some of the planes; true if any has.
+  bool find_live(const Slab& slab) {
+    GroupBits any = 0;
+    live_.fill(0);
+    for (int row = 0; row < AreaBuffer::groups; ++row) {
+      GroupBits bits = 0;
+      for (int column = 0; column < AreaBuffer::groups; ++column) {
+        bool live = false;
+        for (std::size_t b = first_block(row, column); b < first_block(row, column + 1); ++b) {
+          live |= memory_.begin[b] < slab.first + slab.count && memory_.end[b] >= slab.first;
+        }
+        bits |= static_cast<GroupBits>(live) << column;
+      }
+      live_[static_cast<std::size_t>(row)] = bits;
+      any |= bits;
+    }
+    return any != 0;
+  }
+
+  void sweep_slab(const Slab& slab) {
+    if (!find_live(slab)) return;
+    const SlabFrame frame = make_slab_frame(bounds_, slab, context_.view);
+    gather_kernels(*context_.kernels, constants_, frame,
+                   make_frustum(bounds_, frame, context_.view), memory_.gathered);
+    clock_.lap(Stage::traverse);
+    if (memory_.gathered.size == 0 && zero_is_transparent_) return;
+    memory_.buffer.reserve(layout_, planes_at_once_);
+    for (int begin = 0; begin < slab.count; begin += planes_at_once_) {
+      const Slab batch{slab.first + begin, std::min(planes_at_once_, slab.count - begin)};
+      if (begin > 0 && !find_live(batch)) break;
+      sample(frame, begin, batch.count);
+      integrate_area(batch);
+    }
+  }
+
+  /// Pass 1 for planes `first` to first + count - 1 of the slab.
+  void sample(const SlabFrame& frame, int first, int count) {
+    const auto sum = context_.count_inside ? &sum_plane<Channels<false, false, true>>
+                     : !context_.gradients ? &sum_plane<Channels<false, false>>
+                     : context_.absolute   ? &sum_plane<Channels<true, true>>
+                                           : &sum_plane<Channels<true, false>>;
+    EvaluationCounts evaluations;
+    for (int k = 0; k < count; ++k) {
+      const AreaPlane plane = place_plane(bounds_, frame, first + k);
+      find_boxes(memory_.gathered, plane, memory_.plane_kernels);
+      clock_.lap(Stage::cull);
+      sum(memory_.gathered, memory_.plane_kernels, plane, {memory_.buffer, k, field_floats_, live_},
+          evaluations);
+      clock_.lap(Stage::sums);
+    }
+    counts_.kernel_evaluations += evaluations.carried_out;
+    counts_.evaluations_inside += evaluations.inside_support;
+  }
+
+  /// Pass 2 for the planes of the buffer, which is zero again afterwards.
+  void integrate_area(const Slab& batch) {
+    const auto all = static_cast<AreaBuffer::PlaneBits>((std::uint64_t{1} << batch.count) - 1);
+    for (int row = 0; row < AreaBuffer::padded; ++row) {
+      for (int column = 0; column < AreaBuffer::padded; ++column) {
+        AreaBuffer::PlaneBits& touched = memory_.buffer.touched(row, column);
+        const bool live = (live_[static_cast<std::size_t>(row)] >> column & 1) != 0;
+        const AreaBuffer::PlaneBits planes = zero_is_transparent_ ? touched : all;
+        if (live && planes != 0 && find_visible(row, column, planes)) {
+          integrate_group(row, column, batch);
+        }
+        clear(row, column, touched);
+        touched = 0;
+      }
+    }
+    clock_.lap(Stage::integrate);
+  }
+
+  /// Sets memory_.visible for a group; true if anything may be seen.
+  bool find_visible(int row, int column, AreaBuffer::PlaneBits planes) {
+    const LaneTag d;
+    const std::size_t num_fields = context_.classifiers.size();
+    const std::size_t stride = memory_.buffer.plane_floats();
+    const float* samples = memory_.buffer.at(row, column);
+    std::uint64_t any = 0;
+    for (std::size_t i = 0; i < group_blocks * num_fields; ++i, samples += field_floats_) {
+      const Visibility visibility = context_.classifiers[i % num_fields].visibility;
+      std::uint64_t visible = 0;
+      for (AreaBuffer::PlaneBits left = planes; left != 0; left &= left - 1) {
+        const auto k = static_cast<std::size_t>(std::countr_zero(left));
+        const bool seen = may_be_seen(d, hn::Load(d, samples + k * stride), visibility);
+        visible |= std::uint64_t{seen} << k;
+      }
+      memory_.visible[i] = visible;
+      any |= visible;
+    }
+    return any != 0;
+  }
+
+  void integrate_group(int row, int column, const Slab& batch) {
+    const std::size_t num_fields = context_.classifiers.size();
+    const std::uint64_t* visible = memory_.visible.data();
+    const float* samples = memory_.buffer.at(row, column);
+    std::size_t b = first_block(row, column);
+    for (int v = 0; v < group_blocks; ++v, ++b, visible += num_fields) {
+      if (std::any_of(visible, visible + num_fields,
+                      [](std::uint64_t bits) { return bits != 0; })) {
+        integrate(context_.classifiers, context_.shading, batch, layout_,
+                  {samples, memory_.buffer.plane_floats(), field_floats_}, visible,
+                  memory_.blocks[b]);
+        memory_.end[b] = memory_.blocks[b].end;
+      }
+      samples += memory_.buffer.block_floats();
+    }
+  }
+
+  void clear(int row, int column, AreaBuffer::PlaneBits planes) {
+    const LaneTag d;
+    const std::size_t stride = memory_.buffer.plane_floats();
+    float* const samples = memory_.buffer.at(row, column);
+    for (; planes != 0; planes &= planes - 1) {
+      float* const at = samples + static_cast<std::size_t>(std::countr_zero(planes)) * stride;
+      for (std::size_t i = 0; i < stride; i += num_lanes) hn::Store(hn::Zero(d), d, at + i);
+    }
+  }
+
+  const FrameContext& context_;
+  const SamplingConstants constants_;
+  const Tile area_;
+  const RayBounds bounds_;
+  const SampleLayout layout_;
+  const std::size_t field_floats_;  ///< of a block
+  const int planes_at_once_;        ///< in the buffer
+  const bool zero_is_transparent_;  ///< samples that no kernel reaches show nothing
+  SweepMemory& memory_;
+  TileCounts& counts_;
+  StageClock clock_;
+  LiveGroups live_{};                 ///< groups with rays under way
+  SampleIndex begin_ = 0, end_ = -1;  ///< of all rays at first
+};
+
+TileCounts render_sweep(const FrameContext& context, const Tile& area, Framebuffer& image) {
+  static thread_local SweepMemory memory;
+  TileCounts counts;
+  AreaSweep(context, area, memory, counts).run(image);
+  return counts;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace motes
+HWY_AFTER_NAMESPACE();
+
+#endif
