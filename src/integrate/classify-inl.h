@@ -39,7 +39,7 @@ HWY_INLINE std::array<Lanes, N> polynomial(LaneTag d, const float (&c)[M],
   sum.fill(hn::Set(d, c[M - 1]));
   for (std::size_t i = M - 1; i-- > 0;) {
     const Lanes coefficient = hn::Set(d, c[i]);
-    for (std::size_t n = 0; n < N; ++n) sum[n] = hn::MulAdd(sum[n], x[n], coefficient);
+    unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR { sum[n] = hn::MulAdd(sum[n], x[n], coefficient); });
   }
   return sum;
 }
@@ -56,15 +56,15 @@ HWY_INLINE void to_opacity(LaneTag d, float largest, std::array<Lanes, N>& x) {
                               1.283807181e-04f};
   std::array<Lanes, N> thin =
       largest <= 0.125f ? polynomial(d, shorter, x) : polynomial(d, longer, x);
-  for (std::size_t n = 0; n < N; ++n) thin[n] = hn::Mul(thin[n], x[n]);
+  unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR { thin[n] = hn::Mul(thin[n], x[n]); });
   if constexpr (!kPlain) {
-    for (std::size_t n = 0; n < N; ++n) {
+    unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR {
       const LaneMask is_thick = hn::Gt(x[n], hn::Set(d, 1.0f));
-      if (HWY_LIKELY(hn::AllFalse(d, is_thick))) continue;
+      if (HWY_LIKELY(hn::AllFalse(d, is_thick))) return;
       const Lanes bounded = hn::Min(x[n], hn::Set(d, 80.0f));
       const Lanes thick = hn::Sub(hn::Set(d, 1.0f), hn::Exp(d, hn::Neg(bounded)));
       thin[n] = hn::IfThenElse(is_thick, thick, thin[n]);
-    }
+    });
   }
   x = thin;
 }
@@ -127,13 +127,13 @@ HWY_INLINE void place_evenly(LaneTag d, const Classifier& c, float begin,
   // Adding 1.5 * 2^23 rounds to an integer and leaves it in the low bits of the sum. Half a segment
   // less rounds down; between two segments either will do.
   const Lanes half = hn::Set(d, 0.5f), shifter = hn::Set(d, 12582912.0f);
-  for (std::size_t n = 0; n < N; ++n) {
+  unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR {
     const Lanes from_begin = hn::MulAdd(argument[n], per_segment, first);
     const Lanes place = hn::Min(hn::Max(from_begin, hn::Zero(d)), end);
     const Lanes sum = hn::Add(hn::Sub(place, half), shifter);
     out.segment[n] = hn::And(hn::BitCast(di, sum), hn::Set(di, 0xffff));
     out.fraction[n] = hn::Sub(place, hn::Sub(sum, shifter));
-  }
+  });
 }
 
 /// Bisection for long tables: the last segment whose begin is not above the argument.
@@ -166,20 +166,20 @@ HWY_INLINE TablePlaces<N> find_segments(LaneTag d, const Classifier& c,
   if (kKind != TableKind::one_segment && c.num_segments <= 2 * max_lanes) {
     for (int s = 1; s < c.num_segments; ++s) {
       const Lanes begin = hn::Set(d, begins[s]);
-      for (std::size_t n = 0; n < N; ++n) {
+      unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR {
         const auto behind = hn::RebindMask(di, hn::Ge(argument[n], begin));
         out.segment[n] = hn::Sub(out.segment[n], hn::VecFromMask(di, behind));
-      }
+      });
     }
   } else if constexpr (kKind == TableKind::many) {
-    for (std::size_t n = 0; n < N; ++n) out.segment[n] = bisect(d, c, begins, argument[n]);
+    unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR { out.segment[n] = bisect(d, c, begins, argument[n]); });
   }
-  for (std::size_t n = 0; n < N; ++n) {
+  unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR {
     const Lanes begin = look_up<kKind>(d, c, Classifier::begin, out.segment[n]);
     const Lanes inverse_width = look_up<kKind>(d, c, Classifier::inverse_width, out.segment[n]);
     const Lanes fraction = hn::Mul(hn::Sub(argument[n], begin), inverse_width);
     out.fraction[n] = hn::Min(hn::Max(fraction, hn::Zero(d)), hn::Set(d, 1.0f));
-  }
+  });
   return out;
 }
 
@@ -187,11 +187,11 @@ HWY_INLINE TablePlaces<N> find_segments(LaneTag d, const Classifier& c,
 template <TableKind kKind, std::size_t N>
 HWY_INLINE void read_table(LaneTag d, const Classifier& c, int i, const TablePlaces<N>& places,
                            std::array<Lanes, N>& out) {
-  for (std::size_t n = 0; n < N; ++n) {
+  unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR {
     out[n] = hn::MulAdd(places.fraction[n],
                         look_up<kKind>(d, c, Classifier::rise + i, places.segment[n]),
                         look_up<kKind>(d, c, Classifier::base + i, places.segment[n]));
-  }
+  });
 }
 
 /// The classifier's argument for a value of the buffer, with a logarithmic scale. Finite also where
@@ -225,14 +225,14 @@ HWY_INLINE void raise(LaneTag d, float power, std::array<Lanes, N>& x) {
   }
   auto bits = static_cast<unsigned>(power);
   for (; (bits & 1) == 0; bits >>= 1) {
-    for (Lanes& each : x) each = hn::Mul(each, each);
+    unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR { x[n] = hn::Mul(x[n], x[n]); });
   }
   if (HWY_LIKELY(bits == 1)) return;
   std::array<Lanes, N> square = x;
   for (bits >>= 1; bits != 0; bits >>= 1) {
-    for (Lanes& each : square) each = hn::Mul(each, each);
+    unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR { square[n] = hn::Mul(square[n], square[n]); });
     if ((bits & 1) == 0) continue;
-    for (std::size_t n = 0; n < N; ++n) x[n] = hn::Mul(x[n], square[n]);
+    unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR { x[n] = hn::Mul(x[n], square[n]); });
   }
 }
 
@@ -270,28 +270,28 @@ struct Normals {
     const auto absolute_at =
         static_cast<std::size_t>(layout.absolute ? layout.absolute_channel() * num_lanes : 0);
     const Lanes least = hn::Set(d, 1e-12f / (min_radius * min_radius));
-    for (std::size_t n = 0; n < N; ++n) {
+    unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR {
       x[n] = hn::Load(d, channels[n] + num_lanes);
       y[n] = hn::Load(d, channels[n] + 2 * num_lanes);
       z[n] = hn::Load(d, channels[n] + 3 * num_lanes);
-    }
-    for (std::size_t n = 0; n < N; ++n) {
+    });
+    unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR {
       const Lanes norm_sq = hn::MulAdd(x[n], x[n], hn::MulAdd(y[n], y[n], hn::Mul(z[n], z[n])));
       const Lanes absolute = hn::Load(d, channels[n] + absolute_at);
       const LaneMask has_normal =
           hn::And(hn::Ge(norm_sq, hn::Mul(least, hn::Mul(absolute, absolute))),
                   hn::Gt(norm_sq, hn::Set(d, 1e-36f)));
       inverse_norm[n] = hn::IfThenElseZero(has_normal, inverse_sqrt(d, norm_sq));
-    }
+    });
   }
 
   /// Cosines of the angles with unit vectors, without their signs.
   HWY_INLINE std::array<Lanes, N> along(LaneTag d, const Lanes v[3]) const {
     std::array<Lanes, N> cosine;
-    for (std::size_t n = 0; n < N; ++n) {
+    unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR {
       const Lanes sum = hn::MulAdd(x[n], v[0], hn::MulAdd(y[n], v[1], hn::Mul(z[n], v[2])));
       cosine[n] = hn::Min(hn::Abs(hn::Mul(sum, inverse_norm[n])), hn::Set(d, 1.0f));
-    }
+    });
     return cosine;
   }
 };
@@ -320,11 +320,11 @@ HWY_INLINE Light<N> light_samples(LaneTag d, const BlockShading& shading, std::s
     light.specular = normals.along(d, h);
   }
   raise<kPlain>(d, constants.shininess, light.specular);
-  for (std::size_t n = 0; n < N; ++n) {
+  unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR {
     light.diffuse[n] =
         hn::MulAdd(hn::Set(d, constants.diffuse), light.diffuse[n], hn::Set(d, constants.ambient));
     light.specular[n] = hn::Mul(hn::Set(d, constants.specular), light.specular[n]);
-  }
+  });
   return light;
 }
 
@@ -351,7 +351,7 @@ HWY_INLINE void classify(LaneTag d, const BlockShading& shading, std::size_t fie
                          const std::array<const float*, N>& channels, Contributions<N>& out) {
   const Classifier& c = shading.classifiers[field];
   std::array<Lanes, N> argument;
-  for (std::size_t n = 0; n < N; ++n) argument[n] = hn::Load(d, channels[n]);
+  unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR { argument[n] = hn::Load(d, channels[n]); });
   if constexpr (!kPlain) {
     if (c.log_scale) {
       for (Lanes& each : argument) each = logarithmic_argument(d, c, each);
@@ -359,16 +359,19 @@ HWY_INLINE void classify(LaneTag d, const BlockShading& shading, std::size_t fie
   }
   const TablePlaces<N> places = find_segments<kKind>(d, c, argument);
   read_table<kKind>(d, c, 3, places, out.opacity);
-  for (Lanes& depth : out.opacity) depth = hn::Mul(depth, shading.length);
+  unroll<N>([&](std::size_t n)
+                HWY_ATTR { out.opacity[n] = hn::Mul(out.opacity[n], shading.length); });
   to_opacity<kPlain>(d, c.max_depth * shading.constants.max_ray_length, out.opacity);
-  for (int i = 0; i < 3; ++i) read_table<kKind>(d, c, i, places, out.color[i]);
+  unroll<3>([&](std::size_t i)
+                HWY_ATTR { read_table<kKind>(d, c, static_cast<int>(i), places, out.color[i]); });
   if constexpr (kGradients) {
     const Light<N> light = light_samples<kPlain>(d, shading, field, channels);
-    for (auto& color : out.color) {
-      for (std::size_t n = 0; n < N; ++n) {
+    unroll<3>([&](std::size_t i) MOTES_INLINE HWY_ATTR {
+      auto& color = out.color[i];
+      unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR {
         color[n] = hn::MulAdd(color[n], light.diffuse[n], light.specular[n]);
-      }
-    }
+      });
+    });
   }
 }
 

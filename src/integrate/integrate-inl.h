@@ -40,13 +40,15 @@ struct SlabSamples {
 inline constexpr int max_slab = 64;
 
 /// Samples of a slab that some ray may see, the next few.
+template <std::size_t kMost>
 struct SampleChunk {
-  std::array<int, samples_at_once> sample;
+  static constexpr std::size_t most = kMost;
+  std::array<int, kMost> sample;
   std::size_t count = 0;
 
   /// Takes them out of `bits`, bit i being sample i.
   explicit SampleChunk(std::uint64_t& bits) {
-    for (; count < samples_at_once && bits != 0; bits &= bits - 1) {
+    for (; count < kMost && bits != 0; bits &= bits - 1) {
       sample[count++] = std::countr_zero(bits);
     }
   }
@@ -94,24 +96,25 @@ HWY_INLINE void add_field(LaneTag d, const BlockShading& shading, const SlabSamp
   BlockRays rays = rays_out;
   const Lanes termination = hn::Set(d, shading.constants.termination_opacity);
   // False if no ray goes on.
-  const auto add_chunk = [&]<std::size_t N>(const SampleChunk& chunk) HWY_ATTR {
+  const auto add_chunk = [&]<std::size_t N>(const SampleChunk<samples_at_once>& chunk) HWY_ATTR {
     std::array<const float*, N> channels;
-    for (std::size_t n = 0; n < N; ++n) {
+    unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR {
       channels[n] = samples.at(chunk.sample[std::min(n, chunk.count - 1)], 0);
-    }
+    });
     Contributions<N> out;
     classify<kGradients, kPlain, kKind>(d, shading, 0, channels, out);
-    for (std::size_t n = 0; n < N; ++n) {
-      if (n >= chunk.count) break;
+    bool go_on = true;
+    unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR {
+      if (n >= chunk.count || !go_on) return;
       const LaneMask add =
           HWY_UNLIKELY(zero_shows) ? rays.alive_at(d, chunk.sample[n]) : rays.alive;
       rays.composite(d, add, out.opacity[n], out.color[0][n], out.color[1][n], out.color[2][n]);
-      if (!rays.end_opaque(d, termination, chunk.sample[n])) return false;
-    }
-    return true;
+      go_on = rays.end_opaque(d, termination, chunk.sample[n]);
+    });
+    return go_on;
   };
   while (visible != 0) {
-    const SampleChunk chunk(visible);
+    const SampleChunk<samples_at_once> chunk(visible);
     const bool go_on = chunk.count > samples_at_once / 2
                            ? add_chunk.template operator()<samples_at_once>(chunk)
                            : add_chunk.template operator()<samples_at_once / 2>(chunk);
@@ -119,6 +122,10 @@ HWY_INLINE void add_field(LaneTag d, const BlockShading& shading, const SlabSamp
   }
   rays_out = rays;
 }
+
+/// Of several fields each is seen at some samples: so many at once fill the batches of all. Not more,
+/// since a ray may end at the first.
+using FieldsChunk = SampleChunk<4 * samples_at_once>;
 
 /// What a field adds at a sample, on its way from classification to compositing.
 struct StoredContribution {
@@ -129,9 +136,9 @@ struct StoredContribution {
 /// sample of the chunk.
 template <bool kGradients, bool kPlain, TableKind kKind>
 HWY_INLINE void classify_chunk(LaneTag d, const BlockShading& shading, const SlabSamples& samples,
-                               std::size_t field, std::uint64_t visible, const SampleChunk& chunk,
+                               std::size_t field, std::uint64_t visible, const FieldsChunk& chunk,
                                StoredContribution* out) {
-  std::array<std::size_t, samples_at_once> members;
+  std::array<std::size_t, FieldsChunk::most> members;
   std::size_t count = 0;
   for (std::size_t n = 0; n < chunk.count; ++n) {
     members[count] = n;
@@ -152,11 +159,11 @@ HWY_INLINE void classify_chunk(LaneTag d, const BlockShading& shading, const Sla
       hn::Store(some.color[2][n], d, each.b);
     }
   };
-  if (count > 2) {
-    classify_some.template operator()<samples_at_once>(0);
-  } else if (count > 0) {
-    classify_some.template operator()<2>(0);
+  std::size_t begin = 0;
+  for (; begin + 2 < count; begin += samples_at_once) {
+    classify_some.template operator()<samples_at_once>(begin);
   }
+  if (begin < count) classify_some.template operator()<2>(begin);
 }
 
 /// The same for several fields; bit i of visible[f] is sample i of field f.
@@ -166,22 +173,22 @@ HWY_INLINE void add_fields(LaneTag d, const BlockShading& shading, const SlabSam
   BlockRays rays = rays_out;
   const Lanes termination = hn::Set(d, shading.constants.termination_opacity);
   const std::size_t num_fields = shading.classifiers.size();
-  static thread_local AlignedVector<StoredContribution> stored(max_fields * samples_at_once);
+  static thread_local AlignedVector<StoredContribution> stored(max_fields * FieldsChunk::most);
   StoredContribution* const contributions = stored.data();
   std::uint64_t left = 0;
   for (std::size_t f = 0; f < num_fields; ++f) left |= visible[f];
   while (left != 0) {
-    const SampleChunk chunk(left);
+    const FieldsChunk chunk(left);
     for (std::size_t f = 0; f < num_fields; ++f) {
       classify_chunk<kGradients, kPlain, kKind>(d, shading, samples, f, visible[f], chunk,
-                                                contributions + f * samples_at_once);
+                                                contributions + f * FieldsChunk::most);
     }
     for (std::size_t n = 0; n < chunk.count; ++n) {
       const LaneMask add =
           HWY_UNLIKELY(zero_shows) ? rays.alive_at(d, chunk.sample[n]) : rays.alive;
       for (std::size_t f = 0; f < num_fields; ++f) {
         if ((visible[f] >> chunk.sample[n] & 1) == 0) continue;
-        const StoredContribution& each = contributions[f * samples_at_once + n];
+        const StoredContribution& each = contributions[f * FieldsChunk::most + n];
         rays.composite(d, add, hn::Load(d, each.opacity), hn::Load(d, each.r), hn::Load(d, each.g),
                        hn::Load(d, each.b));
       }

@@ -13,7 +13,9 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 
+#include "core/inline.h"
 #include "samples/samples.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -42,6 +44,14 @@ HWY_INLINE hn::Vec<hn::RebindToUnsigned<LaneTag>> numbers_from(std::uint32_t fir
                                                                      8, 9, 10, 11, 12, 13, 14, 15};
   const hn::RebindToUnsigned<LaneTag> du;
   return hn::Add(hn::Load(du, from_zero), hn::Set(du, first));
+}
+
+/// step(0), step(1), ..., step(N - 1), unrolled before the compiler decides what is kept in
+/// registers: arrays of vectors that are only indexed so need no memory.
+template <std::size_t N, class Step>
+HWY_INLINE void unroll(Step&& step) {
+  [&]<std::size_t... n>(std::index_sequence<n...>) MOTES_INLINE HWY_ATTR { (step(n), ...); }
+  (std::make_index_sequence<N>());
 }
 
 /// Something may be seen at one of a field's values.
