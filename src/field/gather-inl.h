@@ -28,7 +28,8 @@ struct GatheredKernels {
   std::size_t size = 0;
   // What finish_kernels() adds.
   AlignedVector<float> support_sq;
-  AlignedVector<float> exponent_scale;  ///< -log2(e) / (2 radius^2)
+  AlignedVector<float> plane_support_sq;  ///< -1 for kernels that are not summed plane by plane
+  AlignedVector<float> exponent_scale;    ///< -log2(e) / (2 radius^2)
   AlignedVector<float> peak;  ///< kappa * weight, of a normalised field over the kernel's integral
   AlignedVector<float> cut;   ///< a kernel is zero where its absolute value would be less
   AlignedVector<std::uint32_t> field;
@@ -37,7 +38,8 @@ struct GatheredKernels {
   void reserve(std::size_t count) {
     if (size + count + max_lanes <= x.size()) return;
     const std::size_t room = 2 * (size + count + max_lanes);
-    for (auto* array : {&x, &y, &z, &radius, &support_sq, &exponent_scale, &peak, &cut}) {
+    for (auto* array :
+         {&x, &y, &z, &radius, &support_sq, &plane_support_sq, &exponent_scale, &peak, &cut}) {
       array->resize(room);
     }
     for (auto* array : {&index, &field}) array->resize(room);

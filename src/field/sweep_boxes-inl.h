@@ -128,7 +128,7 @@ HWY_NOINLINE void find_boxes(const GatheredKernels& gathered, const AreaPlane& p
   const Lanes rows_per_length = hn::Abs(per_row);
   for (std::size_t i = 0; i < gathered.size; i += hn::Lanes(d)) {
     const Lanes dz = hn::Sub(hn::Load(d, gathered.z.data() + i), hn::Set(d, plane.z));
-    const Lanes disc_sq = hn::NegMulAdd(dz, dz, hn::Load(d, gathered.support_sq.data() + i));
+    const Lanes disc_sq = hn::NegMulAdd(dz, dz, hn::Load(d, gathered.plane_support_sq.data() + i));
     const LaneMask reaches = hn::Gt(disc_sq, hn::Set(d, 1e-30f));
     if (hn::AllFalse(d, reaches)) continue;
     const Lanes disc = hn::Mul(hn::Mul(disc_sq, hn::ApproximateReciprocalSqrt(disc_sq)), stretch);

@@ -39,7 +39,8 @@ HWY_INLINE std::array<Lanes, N> polynomial(LaneTag d, const float (&c)[M],
   sum.fill(hn::Set(d, c[M - 1]));
   for (std::size_t i = M - 1; i-- > 0;) {
     const Lanes coefficient = hn::Set(d, c[i]);
-    unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR { sum[n] = hn::MulAdd(sum[n], x[n], coefficient); });
+    unroll<N>([&](std::size_t n)
+                  MOTES_INLINE HWY_ATTR { sum[n] = hn::MulAdd(sum[n], x[n], coefficient); });
   }
   return sum;
 }
@@ -172,7 +173,8 @@ HWY_INLINE TablePlaces<N> find_segments(LaneTag d, const Classifier& c,
       });
     }
   } else if constexpr (kKind == TableKind::many) {
-    unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR { out.segment[n] = bisect(d, c, begins, argument[n]); });
+    unroll<N>([&](std::size_t n)
+                  MOTES_INLINE HWY_ATTR { out.segment[n] = bisect(d, c, begins, argument[n]); });
   }
   unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR {
     const Lanes begin = look_up<kKind>(d, c, Classifier::begin, out.segment[n]);
@@ -230,7 +232,8 @@ HWY_INLINE void raise(LaneTag d, float power, std::array<Lanes, N>& x) {
   if (HWY_LIKELY(bits == 1)) return;
   std::array<Lanes, N> square = x;
   for (bits >>= 1; bits != 0; bits >>= 1) {
-    unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR { square[n] = hn::Mul(square[n], square[n]); });
+    unroll<N>([&](std::size_t n)
+                  MOTES_INLINE HWY_ATTR { square[n] = hn::Mul(square[n], square[n]); });
     if ((bits & 1) == 0) continue;
     unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR { x[n] = hn::Mul(x[n], square[n]); });
   }

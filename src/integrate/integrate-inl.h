@@ -123,9 +123,9 @@ HWY_INLINE void add_field(LaneTag d, const BlockShading& shading, const SlabSamp
   rays_out = rays;
 }
 
-/// Of several fields each is seen at some samples: so many at once fill the batches of all. Not more,
-/// since a ray may end at the first.
-using FieldsChunk = SampleChunk<4 * samples_at_once>;
+/// Of several fields each is seen at some samples: so many at once fill the batches of all. Not
+/// more, since a ray may end at the first.
+using FieldsChunk = SampleChunk<2 * samples_at_once>;
 
 /// What a field adds at a sample, on its way from classification to compositing.
 struct StoredContribution {

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "field/sweep-inl.h"
+#include "field/sweep_columns-inl.h"
 #include "integrate/integrate-inl.h"
 #include "render/ray_packets.h"
 #include "render/ray_state-inl.h"
@@ -33,6 +34,8 @@ struct SweepMemory {
   GatheredKernels gathered;
   PlaneKernels plane_kernels;
   AreaBuffer buffer;
+  ThinKernels thin;
+  ColumnBuffer columns;
   std::vector<std::uint64_t> visible;  ///< of a group: [block][field], a bit a plane
   static constexpr int num_blocks = AreaBuffer::groups * AreaBuffer::groups * group_blocks;
   std::array<RayState, num_blocks> blocks;         ///< row of groups by row, as in AreaBuffer
@@ -158,21 +161,51 @@ class AreaSweep {
 
   /// Pass 1 for planes `first` to first + count - 1 of the slab.
   void sample(const SlabFrame& frame, int first, int count) {
-    const auto sum = context_.count_inside ? &sum_plane<Channels<false, false, true>>
-                     : !context_.gradients ? &sum_plane<Channels<false, false>>
-                     : context_.absolute   ? &sum_plane<Channels<true, true>>
-                                           : &sum_plane<Channels<true, false>>;
+    if (context_.count_inside) {
+      sample_channels<Channels<false, false, true>>(frame, first, count);
+    } else if (!context_.gradients) {
+      sample_channels<Channels<false, false>>(frame, first, count);
+    } else if (context_.absolute) {
+      sample_channels<Channels<true, true>>(frame, first, count);
+    } else {
+      sample_channels<Channels<true, false>>(frame, first, count);
+    }
+  }
+
+  template <class C>
+  void sample_channels(const SlabFrame& frame, int first, int count) {
     EvaluationCounts evaluations;
-    for (int k = 0; k < count; ++k) {
+    const AreaPlanes planes = place_planes(bounds_, frame, first, count);
+    const std::size_t others = find_thin_kernels(planes, memory_.gathered, memory_.thin);
+    clock_.lap(Stage::cull);
+    if (memory_.thin.size != 0) {
+      memory_.columns.reserve(layout_);
+      sum_columns<C>(memory_.gathered, memory_.thin, planes, live_, layout_, memory_.columns,
+                     evaluations);
+      clock_.lap(Stage::sums);
+    }
+    for (int k = 0; k < count && others != 0; ++k) {
       const AreaPlane plane = place_plane(bounds_, frame, first + k);
       find_boxes(memory_.gathered, plane, memory_.plane_kernels);
       clock_.lap(Stage::cull);
-      sum(memory_.gathered, memory_.plane_kernels, plane, {memory_.buffer, k, field_floats_, live_},
-          evaluations);
+      sum_plane<C>(memory_.gathered, memory_.plane_kernels, plane,
+                   {memory_.buffer, k, field_floats_, live_}, evaluations);
       clock_.lap(Stage::sums);
     }
+    if (memory_.thin.size != 0) move_columns(count);
     counts_.kernel_evaluations += evaluations.carried_out;
     counts_.evaluations_inside += evaluations.inside_support;
+  }
+
+  void move_columns(int num_planes) {
+    for (int row = 0; row < AreaBuffer::groups; ++row) {
+      GroupBits& touched = memory_.columns.touched(row);
+      for (; touched != 0; touched &= touched - 1) {
+        move_group(memory_.columns, row, std::countr_zero(touched), num_planes, layout_,
+                   memory_.buffer);
+      }
+    }
+    clock_.lap(Stage::sums);
   }
 
   /// Pass 2 for the planes of the buffer, which is zero again afterwards.

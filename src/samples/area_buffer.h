@@ -22,7 +22,7 @@ class AreaBuffer {
   static constexpr int size = groups * group_size;  ///< pixels of a side
   static constexpr int padded = groups + 2;
   static constexpr int group_pixels = group_size * group_size;
-  static constexpr int max_planes = 32;
+  static constexpr int max_planes = 16;
 
   /// Planes of a group, a bit each.
   using PlaneBits = std::uint32_t;

@@ -1,0 +1,324 @@
+// The sweep's second shape, for kernels of a few pixels: lanes along depth. Included once per
+// instruction set.
+//
+// A vector of planes for each column and each row of pixels that the kernel reaches holds the same
+// factors that sweep-inl.h keeps plane by plane; their product is the kernel along one pixel's ray.
+#if defined(MOTES_FIELD_SWEEP_COLUMNS_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef MOTES_FIELD_SWEEP_COLUMNS_INL_H_
+#undef MOTES_FIELD_SWEEP_COLUMNS_INL_H_
+#else
+#define MOTES_FIELD_SWEEP_COLUMNS_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <numbers>
+
+#include "core/aligned.h"
+#include "field/gather-inl.h"
+#include "field/sweep-inl.h"
+#include "field/sweep_boxes-inl.h"
+#include "samples/column_buffer.h"
+#include "samples/lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace motes {
+namespace HWY_NAMESPACE {
+
+/// Pixels of a side of what a thin kernel reaches, at most.
+inline constexpr int max_thin_pixels = 6;
+/// Vectors that hold all planes of a ColumnBuffer.
+inline constexpr int depth_vectors = ColumnBuffer::planes / num_lanes;
+
+/// Planes of a slab, an element each: see AreaPlane.
+struct AreaPlanes {
+  alignas(64) float x[ColumnBuffer::planes], dx[ColumnBuffer::planes];
+  alignas(64) float y[ColumnBuffer::planes], dy[ColumnBuffer::planes];
+  alignas(64) float z[ColumnBuffer::planes];
+  int count = 0;
+};
+
+/// Planes `first` to first + count - 1 of the slab; those that are missing lie where no kernel
+/// does.
+inline AreaPlanes place_planes(const RayBounds& area, const SlabFrame& frame, int first,
+                               int count) {
+  AreaPlanes planes;
+  planes.count = count;
+  for (int k = 0; k < ColumnBuffer::planes; ++k) {
+    const AreaPlane plane = place_plane(area, frame, first + std::min(k, count - 1));
+    planes.x[k] = plane.x;
+    planes.dx[k] = plane.dx;
+    planes.y[k] = plane.y;
+    planes.dy[k] = plane.dy;
+    planes.z[k] = k < count ? plane.z : 1e10f;
+  }
+  return planes;
+}
+
+/// Pixels of an area that a kernel may reach.
+struct PixelBox {
+  std::uint8_t column, row, last_column, last_row;
+};
+
+/// Gathered kernels that reach but a few pixels.
+struct ThinKernels {
+  AlignedVector<std::uint32_t> kernel, box;
+  std::size_t size = 0;
+
+  PixelBox box_of(std::size_t i) const { return std::bit_cast<PixelBox>(box[i]); }
+};
+
+/// First and last pixel along an axis that kernels may reach on any of the planes, not clipped.
+struct PixelSpans {
+  Lanes first, last;
+};
+
+/// `first`, `step`: place of pixel 0 and distance of pixels, at the first and at the last plane
+/// that a kernel reaches.
+HWY_INLINE PixelSpans pixel_spans(LaneTag d, Lanes center, Lanes support, const Lanes first[2],
+                                  const Lanes step[2]) {
+  const Lanes slack = hn::Set(d, 1e-3f);
+  const Lanes near = hn::Div(hn::Sub(center, first[0]), step[0]);
+  const Lanes far = hn::Div(hn::Sub(center, first[1]), step[1]);
+  // Pixels lie closest on the first plane.
+  const Lanes half = hn::Add(hn::Abs(hn::Div(support, step[0])), slack);
+  return {hn::Ceil(hn::Sub(hn::Min(near, far), half)),
+          hn::Floor(hn::Add(hn::Max(near, far), half))};
+}
+
+/// Finds the thin ones of the gathered kernels, and sets gathered.plane_support_sq to that of all
+/// others that reach the planes, -1 for the rest. Returns how many of those there may be.
+HWY_NOINLINE std::size_t find_thin_kernels(const AreaPlanes& planes, GatheredKernels& gathered,
+                                           ThinKernels& out) {
+  const LaneTag d;
+  const hn::RebindToSigned<LaneTag> di;
+  const hn::RebindToUnsigned<LaneTag> du;
+  out.size = 0;
+  if (out.kernel.size() < gathered.size + max_lanes) {
+    out.kernel.resize(2 * (gathered.size + max_lanes));
+    out.box.resize(2 * (gathered.size + max_lanes));
+  }
+  std::size_t others = 0;
+  const int last_plane = planes.count - 1;
+  const float depth = planes.z[last_plane] - planes.z[0];
+  const Lanes near = hn::Set(d, planes.z[0]), far = hn::Set(d, planes.z[last_plane]);
+  const Lanes per_depth = hn::Set(d, depth > 0 ? 1 / depth : 0.0f);
+  const Lanes planes_per_depth = hn::Mul(per_depth, hn::Set(d, static_cast<float>(last_plane)));
+  const Lanes end = hn::Set(d, static_cast<float>(AreaBuffer::size - 1));
+  // A quantity that is linear in depth, at fraction t of the way from the first plane to the last.
+  const auto at = [&](const float* values, Lanes t) HWY_ATTR {
+    return hn::MulAdd(t, hn::Set(d, values[last_plane] - values[0]), hn::Set(d, values[0]));
+  };
+  for (std::size_t i = 0; i < gathered.size; i += num_lanes) {
+    const Lanes support_sq = hn::Load(d, gathered.support_sq.data() + i);
+    const Lanes support = hn::Sqrt(hn::Max(support_sq, hn::Zero(d)));
+    const Lanes z = hn::Load(d, gathered.z.data() + i);
+    const Lanes first_z = hn::Max(hn::Sub(z, support), near);
+    const Lanes last_z = hn::Min(hn::Add(z, support), far);
+    const LaneMask reaches =
+        hn::And(hn::Ge(support_sq, hn::Zero(d)), hn::Le(hn::Max(first_z, near), last_z));
+    const Lanes t[2] = {hn::Mul(hn::Sub(first_z, near), per_depth),
+                        hn::Mul(hn::Sub(last_z, near), per_depth)};
+    const Lanes x[2] = {at(planes.x, t[0]), at(planes.x, t[1])};
+    const Lanes dx[2] = {at(planes.dx, t[0]), at(planes.dx, t[1])};
+    const Lanes y[2] = {at(planes.y, t[0]), at(planes.y, t[1])};
+    const Lanes dy[2] = {at(planes.dy, t[0]), at(planes.dy, t[1])};
+    const PixelSpans columns = pixel_spans(d, hn::Load(d, gathered.x.data() + i), support, x, dx);
+    const PixelSpans rows = pixel_spans(d, hn::Load(d, gathered.y.data() + i), support, y, dy);
+    // Thin: what it costs pixel by pixel is less than plane by plane (docs/performance.md).
+    const Lanes width = hn::Sub(columns.last, columns.first);
+    const Lanes height = hn::Sub(rows.last, rows.first);
+    const Lanes num_planes =
+        hn::MulAdd(hn::Sub(last_z, first_z), planes_per_depth, hn::Set(d, 1.0f));
+    const Lanes one = hn::Set(d, 1.0f), most = hn::Set(d, static_cast<float>(max_thin_pixels - 1));
+    const LaneMask fits = hn::Le(hn::Max(width, height), most);
+    const LaneMask pays = hn::Le(hn::Mul(hn::Add(width, one), hn::Add(height, one)),
+                                 hn::Mul(num_planes, hn::Set(d, 8.0f)));
+    const LaneMask thin = hn::And(reaches, hn::And(fits, pays));
+    const LaneMask other = hn::AndNot(thin, reaches);
+    hn::Store(hn::IfThenElse(other, support_sq, hn::Set(d, -1.0f)), d,
+              gathered.plane_support_sq.data() + i);
+    others += hn::CountTrue(d, other);
+
+    const auto whole = [&](Lanes v) HWY_ATTR { return hn::BitCast(du, hn::ConvertTo(di, v)); };
+    const Lanes first_column = hn::Max(columns.first, hn::Zero(d));
+    const Lanes last_column = hn::Min(columns.last, end);
+    const Lanes first_row = hn::Max(rows.first, hn::Zero(d)), last_row = hn::Min(rows.last, end);
+    const LaneMask in_area =
+        hn::And(hn::Le(first_column, last_column), hn::Le(first_row, last_row));
+    const auto listed = hn::RebindMask(du, hn::And(thin, in_area));
+    const auto box =
+        hn::Or(hn::Or(whole(first_column), hn::ShiftLeft<8>(whole(first_row))),
+               hn::Or(hn::ShiftLeft<16>(whole(last_column)), hn::ShiftLeft<24>(whole(last_row))));
+    const auto kernel = numbers_from(static_cast<std::uint32_t>(i));
+    hn::StoreU(hn::Compress(kernel, listed), du, out.kernel.data() + out.size);
+    hn::StoreU(hn::Compress(box, listed), du, out.box.data() + out.size);
+    out.size += hn::CountTrue(du, listed);
+  }
+  return others;
+}
+
+/// A kernel's factors along depth, one vector of planes a column and a row of its box.
+template <class C>
+struct DepthFactors {
+  alignas(64) float column[max_thin_pixels][ColumnBuffer::planes];
+  alignas(64) float row[max_thin_pixels][ColumnBuffer::planes];
+  alignas(64) float column_slope[C::gradients ? max_thin_pixels : 1][ColumnBuffer::planes];
+  alignas(64) float row_slope[C::gradients ? max_thin_pixels : 1][ColumnBuffer::planes];
+  alignas(64) float slope_z[C::gradients ? ColumnBuffer::planes : 1];
+
+  HWY_INLINE void fill(LaneTag d, const GatheredKernels& gathered, std::size_t k,
+                       const AreaPlanes& planes, const PixelBox& box) {
+    const Lanes scale = hn::Set(d, gathered.exponent_scale[k]), peak = hn::Set(d, gathered.peak[k]);
+    const Lanes slope = hn::Mul(scale, hn::Set(d, 2 / std::numbers::log2e_v<float>));
+    for (int v = 0; v < ColumnBuffer::planes; v += num_lanes) {
+      const Lanes dz = hn::Sub(hn::Load(d, planes.z + v), hn::Set(d, gathered.z[k]));
+      const Lanes dz_sq = hn::Mul(dz, dz);
+      if constexpr (C::gradients) hn::Store(hn::Mul(dz, slope), d, slope_z + v);
+      const auto coordinate = [&](const float* first, const float* step, float center,
+                                  int pixel) HWY_ATTR {
+        const Lanes from_first = hn::Sub(hn::Load(d, first + v), hn::Set(d, center));
+        return hn::MulAdd(hn::Set(d, static_cast<float>(pixel)), hn::Load(d, step + v), from_first);
+      };
+      for (int i = 0; i <= box.last_column - box.column; ++i) {
+        const Lanes x = coordinate(planes.x, planes.dx, gathered.x[k], box.column + i);
+        hn::Store(hn::Mul(peak, factor_of(d, hn::Mul(scale, hn::Mul(x, x)))), d, column[i] + v);
+        if constexpr (C::gradients) hn::Store(hn::Mul(x, slope), d, column_slope[i] + v);
+      }
+      for (int i = 0; i <= box.last_row - box.row; ++i) {
+        const Lanes y = coordinate(planes.y, planes.dy, gathered.y[k], box.row + i);
+        hn::Store(factor_of(d, hn::Mul(scale, hn::MulAdd(y, y, dz_sq))), d, row[i] + v);
+        if constexpr (C::gradients) hn::Store(hn::Mul(y, slope), d, row_slope[i] + v);
+      }
+    }
+  }
+};
+
+/// Adds a kernel along the ray of the pixel in column `i` and row `j` of its box; `samples` is the
+/// field's channel 0. Returns how many samples lie inside of the support, if C::count.
+template <class C>
+HWY_INLINE std::uint64_t add_to_pixel(LaneTag d, const DepthFactors<C>& factors, Lanes cut, int i,
+                                      int j, float* samples) {
+  std::uint64_t inside_support = 0;
+  for (int v = 0; v < ColumnBuffer::planes; v += num_lanes, samples += num_lanes) {
+    const Lanes p = hn::Mul(hn::Load(d, factors.column[i] + v), hn::Load(d, factors.row[j] + v));
+    const Lanes magnitude = hn::Abs(p);
+    const LaneMask inside = hn::Ge(magnitude, cut);
+    hn::Store(add_inside(d, inside, p, hn::Load(d, samples)), d, samples);
+    if constexpr (C::gradients) {
+      const Lanes phi = hn::IfThenElseZero(inside, p);
+      const auto add = [&](int channel, const float* slope) HWY_ATTR {
+        float* const gradient = samples + channel * ColumnBuffer::planes;
+        hn::Store(hn::MulAdd(phi, hn::Load(d, slope + v), hn::Load(d, gradient)), d, gradient);
+      };
+      add(1, factors.column_slope[i]);
+      add(2, factors.row_slope[j]);
+      add(3, factors.slope_z);
+    }
+    if constexpr (C::absolute) {
+      float* const absolute = samples + 4 * ColumnBuffer::planes;
+      hn::Store(add_inside(d, inside, magnitude, hn::Load(d, absolute)), d, absolute);
+    }
+    if constexpr (C::count) inside_support += hn::CountTrue(d, inside);
+  }
+  return inside_support;
+}
+
+/// Adds thin kernels to the planes of `buffer`.
+template <class C>
+HWY_NOINLINE void sum_columns(const GatheredKernels& gathered, const ThinKernels& list,
+                              const AreaPlanes& planes, const LiveGroups& live,
+                              const SampleLayout& layout, ColumnBuffer& buffer,
+                              EvaluationCounts& counts) {
+  const LaneTag d;
+  const auto field_floats = static_cast<std::size_t>(layout.channels() * ColumnBuffer::planes);
+  for (std::size_t n = 0; n < list.size; ++n) {
+    const PixelBox box = list.box_of(n);
+    const int first_row = box.row / AreaBuffer::group_size;
+    const int last_row = box.last_row / AreaBuffer::group_size;
+    const GroupBits groups = (2u << box.last_column / AreaBuffer::group_size) -
+                             (1u << box.column / AreaBuffer::group_size);
+    const auto row_at = [](int row) { return static_cast<std::size_t>(row); };
+    if (((live[row_at(first_row)] | live[row_at(last_row)]) & groups) == 0) continue;
+    for (int row = first_row; row <= last_row; ++row) buffer.touched(row) |= groups;
+    const std::size_t k = list.kernel[n];
+    DepthFactors<C> factors;
+    factors.fill(d, gathered, k, planes, box);
+    const Lanes cut = hn::Set(d, gathered.cut[k]);
+    float* row_samples = buffer.at(box.row, box.column) + gathered.field[k] * field_floats;
+    for (int j = 0; j <= box.last_row - box.row; ++j, row_samples += buffer.row_floats()) {
+      float* samples = row_samples;
+      for (int i = 0; i <= box.last_column - box.column; ++i, samples += buffer.pixel_floats()) {
+        counts.inside_support += add_to_pixel(d, factors, cut, i, j, samples);
+      }
+    }
+    counts.carried_out += static_cast<std::uint64_t>(
+        (box.last_row - box.row + 1) * (box.last_column - box.column + 1) * ColumnBuffer::planes);
+  }
+}
+
+/// Four vectors with planes in their lanes become four with, in each 128 bits, four pixels: vector
+/// j then has planes j, 4 + j, 8 + j, ...
+HWY_INLINE void transpose_fours(LaneTag d, Lanes (&v)[4]) {
+  const hn::RepartitionToWide<LaneTag> dw;
+  const auto pairs = [&](Lanes a, Lanes b)
+                         HWY_ATTR { return hn::BitCast(dw, hn::InterleaveLower(d, a, b)); };
+  const auto upper_pairs = [&](Lanes a, Lanes b)
+                               HWY_ATTR { return hn::BitCast(dw, hn::InterleaveUpper(d, a, b)); };
+  const auto a = pairs(v[0], v[1]), b = pairs(v[2], v[3]);
+  const auto c = upper_pairs(v[0], v[1]), e = upper_pairs(v[2], v[3]);
+  v[0] = hn::BitCast(d, hn::InterleaveLower(dw, a, b));
+  v[1] = hn::BitCast(d, hn::InterleaveUpper(dw, a, b));
+  v[2] = hn::BitCast(d, hn::InterleaveLower(dw, c, e));
+  v[3] = hn::BitCast(d, hn::InterleaveUpper(dw, c, e));
+}
+
+/// Moves what a group of pixels holds in `columns`, which is zero there afterwards, to `num_planes`
+/// planes of the area.
+HWY_NOINLINE void move_group(ColumnBuffer& columns, int row, int column, int num_planes,
+                             const SampleLayout& layout, AreaBuffer& area) {
+  constexpr int size = AreaBuffer::group_size;
+  const LaneTag d;
+  const hn::FixedTag<float, size> four;
+  const int num_channels = layout.num_fields * layout.channels();
+  float* const group = area.at(row, column);
+  for (int channel = 0; channel < num_channels; ++channel) {
+    for (int y = 0; y < size; ++y) {
+      // The pixels' part of a plane's block: rows of a group lie in blocks of block_rows.
+      float* const out = group + static_cast<std::size_t>(y / block_rows) * area.block_floats() +
+                         static_cast<std::size_t>(channel * num_lanes + y % block_rows * size);
+      for (int v = 0; v < ColumnBuffer::planes; v += num_lanes) {
+        Lanes planes[size];
+        for (int x = 0; x < size; ++x) {
+          float* const in =
+              columns.at(size * row + y, size * column + x) + channel * ColumnBuffer::planes + v;
+          planes[x] = hn::Load(d, in);
+          hn::Store(hn::Zero(d), d, in);
+        }
+        transpose_fours(d, planes);
+        for (int j = 0; j < size; ++j) {
+          alignas(64) float pixels[num_lanes];
+          hn::Store(planes[j], d, pixels);
+          for (int q = 0; q < num_lanes; q += size) {
+            const int k = v + q + j;
+            if (k >= num_planes) continue;
+            float* const at = out + static_cast<std::size_t>(k) * area.plane_floats();
+            hn::Store(hn::Add(hn::Load(four, at), hn::Load(four, pixels + q)), four, at);
+          }
+        }
+      }
+    }
+  }
+  area.touched(row, column) |= (AreaBuffer::PlaneBits{1} << num_planes) - 1;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace motes
+HWY_AFTER_NAMESPACE();
+
+#endif
