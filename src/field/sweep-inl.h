@@ -70,12 +70,20 @@ HWY_INLINE SweptKernel place_kernel(const GatheredKernels& gathered, std::size_t
 }
 
 /// 2^exponent for exponents of at most 0; 0 where that is too small for a float.
-HWY_INLINE Lanes factor_of(LaneTag d, Lanes exponent) {
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V factor_of(D d, V exponent) {
 #if HWY_TARGET <= HWY_AVX3
   // Fraction and power are one operation each, and underflow comes out right.
-  const Lanes fraction{_mm512_reduce_ps(exponent.raw, _MM_FROUND_TO_NEAREST_INT)};
-  const Lanes whole = hn::Sub(exponent, fraction);
-  return Lanes{_mm512_scalef_ps(exp2_fraction(d, fraction).raw, whole.raw)};
+  if constexpr (hn::MaxLanes(D()) == 16) {
+    const V fraction{_mm512_reduce_ps(exponent.raw, _MM_FROUND_TO_NEAREST_INT)};
+    const V whole = hn::Sub(exponent, fraction);
+    return V{_mm512_scalef_ps(exp2_fraction(d, fraction).raw, whole.raw)};
+  } else {
+    static_assert(hn::MaxLanes(D()) == 8);
+    const V fraction{_mm256_reduce_ps(exponent.raw, _MM_FROUND_TO_NEAREST_INT)};
+    const V whole = hn::Sub(exponent, fraction);
+    return V{_mm256_scalef_ps(exp2_fraction(d, fraction).raw, whole.raw)};
+  }
 #else
   return hn::IfThenElseZero(hn::Ge(exponent, hn::Set(d, min_exponent)), exp2_bounded(d, exponent));
 #endif
@@ -135,7 +143,8 @@ HWY_INLINE Lanes spread_rows(LaneTag d, const float* rows, int v) {
 }
 
 /// sum + v where `inside`; AVX-512 does that in one operation.
-HWY_INLINE Lanes add_inside(LaneTag, LaneMask inside, Lanes v, Lanes sum) {
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V add_inside(D, hn::Mask<D> inside, V v, V sum) {
   return HWY_TARGET <= HWY_AVX3 ? hn::IfThenElse(inside, hn::Add(sum, v), sum)
                                 : hn::Add(sum, hn::IfThenElseZero(inside, v));
 }

@@ -13,11 +13,13 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <numbers>
+#include <type_traits>
 
 #include "core/aligned.h"
 #include "field/gather-inl.h"
@@ -32,8 +34,10 @@ namespace HWY_NAMESPACE {
 
 /// Pixels of a side of what a thin kernel reaches, at most.
 inline constexpr int max_thin_pixels = 6;
-/// Vectors that hold all planes of a ColumnBuffer.
-inline constexpr int depth_vectors = ColumnBuffer::planes / num_lanes;
+/// Planes of a vector: not more than a thin kernel usually reaches, so that others are skipped.
+using DepthTag = hn::CappedTag<float, 8>;
+using DepthLanes = hn::Vec<DepthTag>;
+inline constexpr int depth_lanes = static_cast<int>(hn::MaxLanes(DepthTag()));
 
 /// Planes of a slab, an element each: see AreaPlane.
 struct AreaPlanes {
@@ -68,10 +72,33 @@ struct PixelBox {
 /// Gathered kernels that reach but a few pixels.
 struct ThinKernels {
   AlignedVector<std::uint32_t> kernel, box;
+  AlignedVector<std::uint32_t> planes;  ///< first plane it may reach, and 256 times the last
   std::size_t size = 0;
 
   PixelBox box_of(std::size_t i) const { return std::bit_cast<PixelBox>(box[i]); }
+  /// Empties the list and makes room for `count`.
+  void start(std::size_t count) {
+    size = 0;
+    if (count + max_lanes <= kernel.size()) return;
+    for (auto* array : {&kernel, &box, &planes}) array->resize(2 * (count + max_lanes));
+  }
+  template <class V, class M>
+  HWY_INLINE void append(V kernels, V boxes, V reached, M which) {
+    const hn::RebindToUnsigned<LaneTag> du;
+    hn::StoreU(hn::Compress(kernels, which), du, kernel.data() + size);
+    hn::StoreU(hn::Compress(boxes, which), du, box.data() + size);
+    hn::StoreU(hn::Compress(reached, which), du, planes.data() + size);
+    size += hn::CountTrue(du, which);
+  }
 };
+
+/// Lists of thin kernels: those whose boxes fit so many pixels square.
+inline constexpr std::array<int, 4> thin_sizes = {2, 3, 4, max_thin_pixels};
+using ThinLists = std::array<ThinKernels, thin_sizes.size()>;
+
+inline bool any_kernel(const ThinLists& lists) {
+  return std::any_of(lists.begin(), lists.end(), [](const ThinKernels& l) { return l.size != 0; });
+}
 
 /// First and last pixel along an axis that kernels may reach on any of the planes, not clipped.
 struct PixelSpans {
@@ -94,15 +121,11 @@ HWY_INLINE PixelSpans pixel_spans(LaneTag d, Lanes center, Lanes support, const 
 /// Finds the thin ones of the gathered kernels, and sets gathered.plane_support_sq to that of all
 /// others that reach the planes, -1 for the rest. Returns how many of those there may be.
 HWY_NOINLINE std::size_t find_thin_kernels(const AreaPlanes& planes, GatheredKernels& gathered,
-                                           ThinKernels& out) {
+                                           ThinLists& out) {
   const LaneTag d;
   const hn::RebindToSigned<LaneTag> di;
   const hn::RebindToUnsigned<LaneTag> du;
-  out.size = 0;
-  if (out.kernel.size() < gathered.size + max_lanes) {
-    out.kernel.resize(2 * (gathered.size + max_lanes));
-    out.box.resize(2 * (gathered.size + max_lanes));
-  }
+  for (ThinKernels& list : out) list.start(gathered.size);
   std::size_t others = 0;
   const int last_plane = planes.count - 1;
   const float depth = planes.z[last_plane] - planes.z[0];
@@ -155,87 +178,94 @@ HWY_NOINLINE std::size_t find_thin_kernels(const AreaPlanes& planes, GatheredKer
     const auto box =
         hn::Or(hn::Or(whole(first_column), hn::ShiftLeft<8>(whole(first_row))),
                hn::Or(hn::ShiftLeft<16>(whole(last_column)), hn::ShiftLeft<24>(whole(last_row))));
+    const Lanes last_t = hn::Min(t[1], one), rounding = hn::Set(d, 1e-3f);
+    const Lanes last_number = hn::Set(d, static_cast<float>(last_plane));
+    const auto first = whole(hn::Max(hn::MulSub(t[0], last_number, rounding), hn::Zero(d)));
+    const auto last = whole(hn::Min(hn::MulAdd(last_t, last_number, rounding), last_number));
+    const auto reached = hn::Or(first, hn::ShiftLeft<8>(last));
     const auto kernel = numbers_from(static_cast<std::uint32_t>(i));
-    hn::StoreU(hn::Compress(kernel, listed), du, out.kernel.data() + out.size);
-    hn::StoreU(hn::Compress(box, listed), du, out.box.data() + out.size);
-    out.size += hn::CountTrue(du, listed);
+    const Lanes size = hn::Add(hn::Max(width, height), one);
+    float above = 0;
+    for (std::size_t l = 0; l < out.size(); ++l) {
+      const auto most_pixels = static_cast<float>(thin_sizes[l]);
+      const LaneMask fits_list =
+          hn::And(hn::Gt(size, hn::Set(d, above)), hn::Le(size, hn::Set(d, most_pixels)));
+      out[l].append(kernel, box, reached, hn::And(listed, hn::RebindMask(du, fits_list)));
+      above = most_pixels;
+    }
   }
   return others;
 }
 
-/// A kernel's factors along depth, one vector of planes a column and a row of its box.
-template <class C>
+/// A kernel's factors in a vector of planes, one for each column and row of its box.
+template <int kSize, class C>
 struct DepthFactors {
-  alignas(64) float column[max_thin_pixels][ColumnBuffer::planes];
-  alignas(64) float row[max_thin_pixels][ColumnBuffer::planes];
-  alignas(64) float column_slope[C::gradients ? max_thin_pixels : 1][ColumnBuffer::planes];
-  alignas(64) float row_slope[C::gradients ? max_thin_pixels : 1][ColumnBuffer::planes];
-  alignas(64) float slope_z[C::gradients ? ColumnBuffer::planes : 1];
+  alignas(64) float column[kSize][depth_lanes], row[kSize][depth_lanes];
+  alignas(64) float column_slope[C::gradients ? kSize : 1][depth_lanes];
+  alignas(64) float row_slope[C::gradients ? kSize : 1][depth_lanes];
+  alignas(64) float slope_z[depth_lanes];
 
-  HWY_INLINE void fill(LaneTag d, const GatheredKernels& gathered, std::size_t k,
-                       const AreaPlanes& planes, const PixelBox& box) {
-    const Lanes scale = hn::Set(d, gathered.exponent_scale[k]), peak = hn::Set(d, gathered.peak[k]);
-    const Lanes slope = hn::Mul(scale, hn::Set(d, 2 / std::numbers::log2e_v<float>));
-    for (int v = 0; v < ColumnBuffer::planes; v += num_lanes) {
-      const Lanes dz = hn::Sub(hn::Load(d, planes.z + v), hn::Set(d, gathered.z[k]));
-      const Lanes dz_sq = hn::Mul(dz, dz);
-      if constexpr (C::gradients) hn::Store(hn::Mul(dz, slope), d, slope_z + v);
-      const auto coordinate = [&](const float* first, const float* step, float center,
-                                  int pixel) HWY_ATTR {
-        const Lanes from_first = hn::Sub(hn::Load(d, first + v), hn::Set(d, center));
-        return hn::MulAdd(hn::Set(d, static_cast<float>(pixel)), hn::Load(d, step + v), from_first);
-      };
-      for (int i = 0; i <= box.last_column - box.column; ++i) {
-        const Lanes x = coordinate(planes.x, planes.dx, gathered.x[k], box.column + i);
-        hn::Store(hn::Mul(peak, factor_of(d, hn::Mul(scale, hn::Mul(x, x)))), d, column[i] + v);
-        if constexpr (C::gradients) hn::Store(hn::Mul(x, slope), d, column_slope[i] + v);
-      }
-      for (int i = 0; i <= box.last_row - box.row; ++i) {
-        const Lanes y = coordinate(planes.y, planes.dy, gathered.y[k], box.row + i);
-        hn::Store(factor_of(d, hn::Mul(scale, hn::MulAdd(y, y, dz_sq))), d, row[i] + v);
-        if constexpr (C::gradients) hn::Store(hn::Mul(y, slope), d, row_slope[i] + v);
-      }
+  /// Those of a vector of planes, the one that begins at plane `v`.
+  HWY_INLINE void fill(DepthTag d, const GatheredKernels& gathered, std::size_t k,
+                       const AreaPlanes& planes, const PixelBox& box, int v) {
+    const DepthLanes scale = hn::Set(d, gathered.exponent_scale[k]);
+    const DepthLanes peak = hn::Set(d, gathered.peak[k]);
+    const DepthLanes slope = hn::Mul(scale, hn::Set(d, 2 / std::numbers::log2e_v<float>));
+    const DepthLanes dz = hn::Sub(hn::Load(d, planes.z + v), hn::Set(d, gathered.z[k]));
+    const DepthLanes dz_sq = hn::Mul(dz, dz);
+    if constexpr (C::gradients) hn::Store(hn::Mul(dz, slope), d, slope_z);
+    const auto place = [&](const float* first, const float* step, float center,
+                           int pixel) MOTES_INLINE HWY_ATTR {
+      const DepthLanes from_first = hn::Sub(hn::Load(d, first + v), hn::Set(d, center));
+      return hn::MulAdd(hn::Set(d, static_cast<float>(pixel)), hn::Load(d, step + v), from_first);
+    };
+    for (int i = 0; i < kSize; ++i) {
+      const DepthLanes x = place(planes.x, planes.dx, gathered.x[k], box.column + i);
+      hn::Store(hn::Mul(peak, factor_of(d, hn::Mul(scale, hn::Mul(x, x)))), d, column[i]);
+      if constexpr (C::gradients) hn::Store(hn::Mul(x, slope), d, column_slope[i]);
+    }
+    for (int i = 0; i < kSize; ++i) {
+      const DepthLanes y = place(planes.y, planes.dy, gathered.y[k], box.row + i);
+      hn::Store(factor_of(d, hn::Mul(scale, hn::MulAdd(y, y, dz_sq))), d, row[i]);
+      if constexpr (C::gradients) hn::Store(hn::Mul(y, slope), d, row_slope[i]);
     }
   }
 };
 
-/// Adds a kernel along the ray of the pixel in column `i` and row `j` of its box; `samples` is the
-/// field's channel 0. Returns how many samples lie inside of the support, if C::count.
-template <class C>
-HWY_INLINE std::uint64_t add_to_pixel(LaneTag d, const DepthFactors<C>& factors, Lanes cut, int i,
-                                      int j, float* samples) {
-  std::uint64_t inside_support = 0;
-  for (int v = 0; v < ColumnBuffer::planes; v += num_lanes, samples += num_lanes) {
-    const Lanes p = hn::Mul(hn::Load(d, factors.column[i] + v), hn::Load(d, factors.row[j] + v));
-    const Lanes magnitude = hn::Abs(p);
-    const LaneMask inside = hn::Ge(magnitude, cut);
-    hn::Store(add_inside(d, inside, p, hn::Load(d, samples)), d, samples);
-    if constexpr (C::gradients) {
-      const Lanes phi = hn::IfThenElseZero(inside, p);
-      const auto add = [&](int channel, const float* slope) HWY_ATTR {
-        float* const gradient = samples + channel * ColumnBuffer::planes;
-        hn::Store(hn::MulAdd(phi, hn::Load(d, slope + v), hn::Load(d, gradient)), d, gradient);
-      };
-      add(1, factors.column_slope[i]);
-      add(2, factors.row_slope[j]);
-      add(3, factors.slope_z);
-    }
-    if constexpr (C::absolute) {
-      float* const absolute = samples + 4 * ColumnBuffer::planes;
-      hn::Store(add_inside(d, inside, magnitude, hn::Load(d, absolute)), d, absolute);
-    }
-    if constexpr (C::count) inside_support += hn::CountTrue(d, inside);
+/// Adds a kernel to a vector of planes of the pixel in column `i` and row `j` of its box; `samples`
+/// is the field's channel 0 there. Returns how many samples lie inside of the support, if C::count.
+template <int kSize, class C>
+HWY_INLINE std::uint64_t add_to_pixel(DepthTag d, const DepthFactors<kSize, C>& factors,
+                                      DepthLanes cut, int i, int j, float* samples) {
+  const DepthLanes p = hn::Mul(hn::Load(d, factors.column[i]), hn::Load(d, factors.row[j]));
+  const DepthLanes magnitude = hn::Abs(p);
+  const auto inside = hn::Ge(magnitude, cut);
+  hn::Store(add_inside(d, inside, p, hn::Load(d, samples)), d, samples);
+  if constexpr (C::gradients) {
+    const DepthLanes phi = hn::IfThenElseZero(inside, p);
+    const auto add = [&](int channel, const float* slope) MOTES_INLINE HWY_ATTR {
+      float* const gradient = samples + channel * ColumnBuffer::planes;
+      hn::Store(hn::MulAdd(phi, hn::Load(d, slope), hn::Load(d, gradient)), d, gradient);
+    };
+    add(1, factors.column_slope[i]);
+    add(2, factors.row_slope[j]);
+    add(3, factors.slope_z);
   }
-  return inside_support;
+  if constexpr (C::absolute) {
+    float* const absolute = samples + 4 * ColumnBuffer::planes;
+    hn::Store(add_inside(d, inside, magnitude, hn::Load(d, absolute)), d, absolute);
+  }
+  return C::count ? hn::CountTrue(d, inside) : 0;
 }
 
-/// Adds thin kernels to the planes of `buffer`.
-template <class C>
-HWY_NOINLINE void sum_columns(const GatheredKernels& gathered, const ThinKernels& list,
-                              const AreaPlanes& planes, const LiveGroups& live,
-                              const SampleLayout& layout, ColumnBuffer& buffer,
-                              EvaluationCounts& counts) {
-  const LaneTag d;
+/// Adds thin kernels to the planes of `buffer`, all of them to kSize x kSize pixels: no branch
+/// depends on the box.
+template <int kSize, class C>
+HWY_NOINLINE void add_thin_kernels(const GatheredKernels& gathered, const ThinKernels& list,
+                                   const AreaPlanes& planes, const LiveGroups& live,
+                                   const SampleLayout& layout, ColumnBuffer& buffer,
+                                   EvaluationCounts& counts) {
+  const DepthTag d;
   const auto field_floats = static_cast<std::size_t>(layout.channels() * ColumnBuffer::planes);
   for (std::size_t n = 0; n < list.size; ++n) {
     const PixelBox box = list.box_of(n);
@@ -247,19 +277,34 @@ HWY_NOINLINE void sum_columns(const GatheredKernels& gathered, const ThinKernels
     if (((live[row_at(first_row)] | live[row_at(last_row)]) & groups) == 0) continue;
     for (int row = first_row; row <= last_row; ++row) buffer.touched(row) |= groups;
     const std::size_t k = list.kernel[n];
-    DepthFactors<C> factors;
-    factors.fill(d, gathered, k, planes, box);
-    const Lanes cut = hn::Set(d, gathered.cut[k]);
-    float* row_samples = buffer.at(box.row, box.column) + gathered.field[k] * field_floats;
-    for (int j = 0; j <= box.last_row - box.row; ++j, row_samples += buffer.row_floats()) {
-      float* samples = row_samples;
-      for (int i = 0; i <= box.last_column - box.column; ++i, samples += buffer.pixel_floats()) {
-        counts.inside_support += add_to_pixel(d, factors, cut, i, j, samples);
+    const DepthLanes cut = hn::Set(d, gathered.cut[k]);
+    float* const first = buffer.at(box.row, box.column) + gathered.field[k] * field_floats;
+    const int first_plane = static_cast<int>(list.planes[n] & 0xff);
+    const int last_plane = static_cast<int>(list.planes[n] >> 8);
+    for (int v = first_plane / depth_lanes * depth_lanes; v <= last_plane; v += depth_lanes) {
+      DepthFactors<kSize, C> factors;
+      factors.fill(d, gathered, k, planes, box, v);
+      float* row_samples = first + v;
+      for (int j = 0; j < kSize; ++j, row_samples += buffer.row_floats()) {
+        float* samples = row_samples;
+        for (int i = 0; i < kSize; ++i, samples += buffer.pixel_floats()) {
+          counts.inside_support += add_to_pixel(d, factors, cut, i, j, samples);
+        }
       }
+      counts.carried_out += static_cast<std::uint64_t>(kSize * kSize * depth_lanes);
     }
-    counts.carried_out += static_cast<std::uint64_t>(
-        (box.last_row - box.row + 1) * (box.last_column - box.column + 1) * ColumnBuffer::planes);
   }
+}
+
+/// Adds all thin kernels to the planes of `buffer`.
+template <class C>
+void sum_columns(const GatheredKernels& gathered, const ThinLists& lists, const AreaPlanes& planes,
+                 const LiveGroups& live, const SampleLayout& layout, ColumnBuffer& buffer,
+                 EvaluationCounts& counts) {
+  unroll<thin_sizes.size()>([&]<std::size_t kList>(std::integral_constant<std::size_t, kList>) {
+    add_thin_kernels<thin_sizes[kList], C>(gathered, lists[kList], planes, live, layout, buffer,
+                                           counts);
+  });
 }
 
 /// Four vectors with planes in their lanes become four with, in each 128 bits, four pixels: vector

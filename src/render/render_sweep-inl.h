@@ -34,7 +34,7 @@ struct SweepMemory {
   GatheredKernels gathered;
   PlaneKernels plane_kernels;
   AreaBuffer buffer;
-  ThinKernels thin;
+  ThinLists thin;
   ColumnBuffer columns;
   std::vector<std::uint64_t> visible;  ///< of a group: [block][field], a bit a plane
   static constexpr int num_blocks = AreaBuffer::groups * AreaBuffer::groups * group_blocks;
@@ -178,7 +178,8 @@ class AreaSweep {
     const AreaPlanes planes = place_planes(bounds_, frame, first, count);
     const std::size_t others = find_thin_kernels(planes, memory_.gathered, memory_.thin);
     clock_.lap(Stage::cull);
-    if (memory_.thin.size != 0) {
+    const bool any_thin = any_kernel(memory_.thin);
+    if (any_thin) {
       memory_.columns.reserve(layout_);
       sum_columns<C>(memory_.gathered, memory_.thin, planes, live_, layout_, memory_.columns,
                      evaluations);
@@ -192,7 +193,7 @@ class AreaSweep {
                    {memory_.buffer, k, field_floats_, live_}, evaluations);
       clock_.lap(Stage::sums);
     }
-    if (memory_.thin.size != 0) move_columns(count);
+    if (any_thin) move_columns(count);
     counts_.kernel_evaluations += evaluations.carried_out;
     counts_.evaluations_inside += evaluations.inside_support;
   }

@@ -12,10 +12,12 @@
 
 namespace motes {
 
-/// Samples of 64 x 64 pixels: [row of pixels][column of pixels][field][channel][plane].
+/// Samples of 64 x 64 pixels: [row of pixels][column of pixels][field][channel][plane]. A few
+/// pixels beyond the area may be written and are never read.
 class ColumnBuffer {
  public:
   static constexpr int planes = 16;
+  static constexpr int padded = AreaBuffer::padded * AreaBuffer::group_size;
 
   /// Makes room for that layout; if it is the layout already, samples keep what they hold, else all
   /// are zero and untouched.
@@ -25,12 +27,12 @@ class ColumnBuffer {
                                      static_cast<std::size_t>(planes);
     if (pixel_floats == pixel_floats_) return;
     pixel_floats_ = pixel_floats;
-    values_.assign(AreaBuffer::size * row_floats(), 0.0f);
+    values_.assign(static_cast<std::size_t>(padded) * row_floats(), 0.0f);
     touched_.fill(0);
   }
 
   std::size_t pixel_floats() const { return pixel_floats_; }
-  std::size_t row_floats() const { return AreaBuffer::size * pixel_floats_; }
+  std::size_t row_floats() const { return padded * pixel_floats_; }
 
   /// First float of a pixel. Hot: unchecked.
   float* at(int row, int column) {

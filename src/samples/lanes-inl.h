@@ -13,6 +13,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 #include <utility>
 
 #include "core/inline.h"
@@ -50,7 +51,9 @@ HWY_INLINE hn::Vec<hn::RebindToUnsigned<LaneTag>> numbers_from(std::uint32_t fir
 /// registers: arrays of vectors that are only indexed so need no memory.
 template <std::size_t N, class Step>
 HWY_INLINE void unroll(Step&& step) {
-  [&]<std::size_t... n>(std::index_sequence<n...>) MOTES_INLINE HWY_ATTR { (step(n), ...); }
+  [&]<std::size_t... n>(std::index_sequence<n...>) MOTES_INLINE HWY_ATTR {
+    (step(std::integral_constant<std::size_t, n>()), ...);
+  }
   (std::make_index_sequence<N>());
 }
 
