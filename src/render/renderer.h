@@ -22,6 +22,9 @@ struct RenderOptions {
   /// unless told.
   std::optional<int> samples_per_pass;
   Progress* progress = nullptr;
+  /// Fills RenderStatistics::evaluations_inside too. Counting takes time: for a frame of its own,
+  /// that is not measured.
+  bool count_inside = false;
 };
 
 struct RenderStatistics {
@@ -31,6 +34,9 @@ struct RenderStatistics {
   StageTicks stages;                     ///< of all threads
   int threads = 0;
   std::string engine, instruction_set;
+  /// Of the kernel evaluations those at samples inside the kernel's support; 0 unless
+  /// RenderOptions::count_inside asks for it and the engine can tell.
+  std::uint64_t evaluations_inside = 0;
 };
 
 /// How a Renderer took a new frame of its particles.

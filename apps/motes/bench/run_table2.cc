@@ -36,14 +36,14 @@ Row measure_row(const BenchJob& job, const BenchScene& entry, const PreparedScen
   ResolvedScene scene = prepared.resolved;
   if (close) scene.camera = moved_closer(scene.camera, entry.close);
   const std::vector<FrameTimes> times =
-      measure_frames(prepared.renderer, engine_variants(scene), job.options, console);
+      measure_frames(engine_variants(prepared.renderer, scene), job.options, console);
   Row row{&entry, close, scene.camera, times[0], times[1], std::nullopt};
   // Direct takes about eight times as long as coherent.
   constexpr double patience_ms = 2000;
   if (row.coherent.median_ms <= patience_ms) {
-    Variant direct{scene, std::nullopt, patience_ms};
+    Variant direct{&prepared.renderer, scene, std::nullopt, patience_ms};
     direct.scene.render.engine = Engine::direct;
-    row.direct = measure_frames(prepared.renderer, {direct}, job.options, console)[0];
+    row.direct = measure_frames({direct}, job.options, console)[0];
   }
   return row;
 }
