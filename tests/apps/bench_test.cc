@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -99,6 +100,46 @@ TEST_F(Bench, Table2ComparesEnginesInBothViews) {
   EXPECT_EQ(table["rows"][2]["paper_cpu_fps"], 3.65);
   EXPECT_EQ(table["rows"][3]["paper_cpu_fps"], 2.53);
   EXPECT_THAT(workspace_.read("out/bench/table2.svg"), HasSubstr("nanobowl close"));
+}
+
+TEST_F(Bench, LimitComparesWithThePeakOfTheMachine) {
+  const Outcome outcome = measure("limit zeolite --threads 2 --memory 1");
+  EXPECT_EQ(outcome.err, "");
+  const auto table = result("limit");
+  const auto peak = table["summary"]["peak"];
+  EXPECT_EQ(peak["threads"], 2);
+  const double lit = peak["lit_evaluations_per_second"];
+  EXPECT_GT(lit, 0);
+  for (const char* key : {"unlit_evaluations_per_second", "time_stamp_ticks_per_second",
+                          "read_bytes_per_second", "copied_bytes_per_second"}) {
+    EXPECT_GT(peak[key].get<double>(), 0) << key;
+  }
+  ASSERT_EQ(table["rows"].size(), 2U);
+  for (const auto& row : table["rows"]) {
+    EXPECT_EQ(row["lighting"], true);
+    double stages = 0;
+    for (const auto& stage : row["stages"].items()) stages += stage.value().get<double>();
+    EXPECT_NEAR(stages, 1, 1e-9);
+    EXPECT_GT(row["stages"]["sums"], 0);
+    // The same by hand, all lanes counted.
+    const double lanes = row["sweep"]["kernel_evaluations"];
+    const double seconds = 1e-3 * row["sweep"]["frame_ms"].get<double>();
+    EXPECT_NEAR(row["peak_fraction_lanes"].get<double>(), lanes / lit / seconds, 1e-9);
+    EXPECT_GT(row["ticks_per_lane"].get<double>(), 0);
+    if (row["evaluations_inside"].is_null()) continue;  // the engine does not count them
+    EXPECT_LT(row["evaluations_inside"], lanes);
+    EXPECT_LT(row["peak_fraction_inside"], row["peak_fraction_lanes"]);
+  }
+  EXPECT_THAT(workspace_.read("out/bench/limit.svg"), HasSubstr("zeolite close"));
+  EXPECT_THAT(workspace_.read("out/bench/limit_stages.svg"), Not(HasSubstr("nan")));
+}
+
+TEST_F(Bench, LimitMeasuresTheInstructionSetThatIsForced) {
+  ::setenv("MOTES_TARGET", "SSE4", 1);
+  measure("limit zeolite --memory 1");
+  ::unsetenv("MOTES_TARGET");
+  EXPECT_EQ(result("limit")["machine"]["instruction_set"], "SSE4");
+  EXPECT_EQ(result("limit")["summary"]["peak"]["lanes"], 4);
 }
 
 TEST_F(Bench, Fig6CutsOutOnePartAfterTheOther) {

@@ -25,6 +25,7 @@ constexpr const char* examples =
   scenes    make the particles of the scenes
   table1    their sizes, memory and build times, beside the paper's Table 1
   table2    frames per second of all engines, far and close, beside the paper's Table 2
+  limit     what part of the machine's peak the sweep reaches, and where the rest goes
   fig6      frames per second from a thousand to all particles of the cosmological box
   fig7      frames per second with rays that end early or late, and with passes of many samples
   fig8      pictures for several kernel scales (kappa), and their frames per second
@@ -51,6 +52,7 @@ struct Benchmark {
 constexpr Benchmark benchmarks[] = {{"scenes", run_scenes, ""},
                                     {"table1", run_table1, ""},
                                     {"table2", run_table2, ""},
+                                    {"limit", run_limit, ""},
                                     {"fig6", run_fig6, "cosmology", false},
                                     {"fig7", run_fig7, "cosmology", false},
                                     {"fig8", run_fig8, "nanobowl"},

@@ -19,6 +19,8 @@ class Workplace {
             std::optional<std::size_t> memory);
 
   const std::filesystem::path& data() const { return data_; }
+  /// Bytes that may be used: what was given, or what is free now.
+  std::size_t memory() const;
   /// A file of results.
   std::filesystem::path result(std::string_view name) const { return output_ / name; }
   std::filesystem::path scene_file(const BenchScene& scene) const;
