@@ -115,6 +115,30 @@ TEST_F(Bench, Table2ComparesEnginesInBothViews) {
   EXPECT_THAT(workspace_.read("out/bench/table2.svg"), HasSubstr("nanobowl close"));
 }
 
+TEST_F(Bench, FieldsCompareFramesInWhichRaysGoEquallyDeep) {
+  const Outcome outcome = measure("fields zeolite nanobowl");
+  EXPECT_EQ(outcome.err, "");
+  const auto rows = result("fields")["rows"];
+  ASSERT_EQ(rows.size(), 4U);
+  for (const auto& row : rows) {
+    EXPECT_EQ(row["fields"], 2);  // the bowl's one field becomes one for each of its two elements
+    const double one = row["one_field"]["frame_ms"], shared = row["shared"]["frame_ms"];
+    EXPECT_NEAR(row["each_additional_field"].get<double>(), shared / one - 1, 1e-9);
+    const double samples = row["one_field"]["samples"];
+    EXPECT_NEAR(row["shared"]["samples"].get<double>(), samples, 0.01 * samples);
+    EXPECT_NEAR(row["doubled"]["samples"].get<double>(), samples, 0.001 * samples);
+    // The same kernels, and twice as many.
+    const double evaluations = row["one_field"]["kernel_evaluations"];
+    EXPECT_NEAR(row["doubled"]["kernel_evaluations"].get<double>(), 2 * evaluations,
+                0.02 * evaluations);
+  }
+  EXPECT_THAT(workspace_.read("out/bench/fields.svg"), HasSubstr("zeolite close"));
+
+  const Outcome alike = bench("fields nanosphere_90k");
+  EXPECT_EQ(alike.status, 1);
+  EXPECT_THAT(alike.err, HasSubstr("nanosphere_90k has one field and one species"));
+}
+
 TEST_F(Bench, LimitComparesWithThePeakOfTheMachine) {
   const Outcome outcome = measure("limit zeolite --threads 2 --memory 1");
   EXPECT_EQ(outcome.err, "");
@@ -197,7 +221,7 @@ TEST_F(Bench, Fig8AndFig9MakePictures) {
 }
 
 TEST_F(Bench, ASceneTooLargeForTheMemoryIsRefusedFirst) {
-  for (const std::string what : {"scenes", "table1", "table2"}) {
+  for (const std::string what : {"scenes", "table1", "table2", "fields"}) {
     EXPECT_THAT(failure("bench " + what + " tryptophan cosmology --memory 2" + data, 1),
                 StartsWith("motes: error: cosmology: 82051072 particles need "));
   }
