@@ -107,7 +107,8 @@ FrameContext make_context(const KernelSet& kernels, const ResolvedScene& scene,
         static_cast<float>(std::hypot(1, context.half_width, context.half_height));
   }
   context.engine = scene.render.engine;
-  context.gradients = scene.render.lighting.enabled;
+  context.count_inside = options.count_inside && context.engine == Engine::sweep;
+  context.gradients = scene.render.lighting.enabled && !context.count_inside;
   context.absolute = context.absolute && context.gradients;
   const int num_fields = static_cast<int>(kernels.fields.size());
   const int default_planes = context.engine == Engine::sweep ? 16
@@ -202,7 +203,8 @@ void Renderer::render(const ResolvedScene& scene, const RenderOptions& options, 
                    all.stages,
                    threads,
                    std::string(name_of(scene.render.engine)),
-                   target};
+                   target,
+                   all.evaluations_inside};
   }
 }
 

@@ -18,10 +18,13 @@ namespace motes {
 struct RenderOptions {
   int threads = 0;  ///< 0: all of the machine's
   /// Planes of samples of one pass over the tree (paper, section 4.2); 0: the whole ray in one
-  /// pass; nullopt: 32 for one field, 64 / M for M fields. The sweep takes at most 32, and 16
-  /// unless told.
+  /// pass; nullopt: 32 for one field, 64 / M for M fields. The sweep takes 16, and
+  /// no more if it is told so.
   std::optional<int> samples_per_pass;
   Progress* progress = nullptr;
+  /// Fills RenderStatistics::evaluations_inside too, if the engine is the sweep. For a frame of its
+  /// own, that is neither measured nor shown: counting takes time, and the picture is not lit.
+  bool count_inside = false;
 };
 
 struct RenderStatistics {
@@ -31,6 +34,9 @@ struct RenderStatistics {
   StageTicks stages;                     ///< of all threads
   int threads = 0;
   std::string engine, instruction_set;
+  /// Of the kernel evaluations those at samples inside the kernel's support; 0 unless
+  /// RenderOptions::count_inside asks for it and the engine can tell.
+  std::uint64_t evaluations_inside = 0;
 };
 
 /// How a Renderer took a new frame of its particles.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -86,19 +87,96 @@ TEST_F(Bench, Table2ComparesEnginesInBothViews) {
   ASSERT_EQ(table["rows"].size(), 4U);
   for (const auto& row : table["rows"]) {
     EXPECT_THAT(outcome.out, HasSubstr(row["scene"].get<std::string>()));
-    const double ratio = row["coherent_over_sweep"];
-    EXPECT_TRUE(std::isfinite(ratio) && ratio > 0) << row;
+    for (const char* lighting : {"lit", "unlit"}) {
+      const auto& pair = row[lighting];
+      const double ratio = pair["coherent_over_sweep"];
+      EXPECT_TRUE(std::isfinite(ratio) && ratio > 0) << row;
+      EXPECT_EQ(pair["sweep"]["samples"], pair["coherent"]["samples"]);
+    }
+    EXPECT_EQ(row["lit"]["sweep"]["samples"], row["unlit"]["sweep"]["samples"]);
+    EXPECT_EQ(row["lit_over_unlit"], row["lit"]["sweep"]["frame_ms"].get<double>() /
+                                         row["unlit"]["sweep"]["frame_ms"].get<double>());
     EXPECT_GT(row["direct"]["fps"].get<double>(), 0);
-    EXPECT_EQ(row["sweep"]["samples"], row["coherent"]["samples"]);
     // Half-transparent, as it is meant to be.
     EXPECT_GT(row["mean_opacity"].get<double>(), 0.2);
     EXPECT_LT(row["mean_opacity"].get<double>(), 0.95);
   }
+  // The means under the table are those of its rows.
+  double logs = 0;
+  for (const auto& row : table["rows"]) {
+    logs += std::log(row["unlit"]["coherent_over_sweep"].get<double>());
+  }
+  EXPECT_NEAR(table["summary"]["coherent_over_sweep_unlit"]["geometric_mean"].get<double>(),
+              std::exp(logs / 4), 1e-9);
   EXPECT_EQ(table["rows"][0]["scene"], "zeolite");
   EXPECT_TRUE(table["rows"][0]["paper_cpu_fps"].is_null());
   EXPECT_EQ(table["rows"][2]["paper_cpu_fps"], 3.65);
   EXPECT_EQ(table["rows"][3]["paper_cpu_fps"], 2.53);
   EXPECT_THAT(workspace_.read("out/bench/table2.svg"), HasSubstr("nanobowl close"));
+}
+
+TEST_F(Bench, FieldsCompareFramesInWhichRaysGoEquallyDeep) {
+  const Outcome outcome = measure("fields zeolite nanobowl");
+  EXPECT_EQ(outcome.err, "");
+  const auto rows = result("fields")["rows"];
+  ASSERT_EQ(rows.size(), 4U);
+  for (const auto& row : rows) {
+    EXPECT_EQ(row["fields"], 2);  // the bowl's one field becomes one for each of its two elements
+    const double one = row["one_field"]["frame_ms"], shared = row["shared"]["frame_ms"];
+    EXPECT_NEAR(row["each_additional_field"].get<double>(), shared / one - 1, 1e-9);
+    const double samples = row["one_field"]["samples"];
+    EXPECT_NEAR(row["shared"]["samples"].get<double>(), samples, 0.01 * samples);
+    EXPECT_NEAR(row["doubled"]["samples"].get<double>(), samples, 0.001 * samples);
+    // The same kernels, and twice as many.
+    const double evaluations = row["one_field"]["kernel_evaluations"];
+    EXPECT_NEAR(row["doubled"]["kernel_evaluations"].get<double>(), 2 * evaluations,
+                0.02 * evaluations);
+  }
+  EXPECT_THAT(workspace_.read("out/bench/fields.svg"), HasSubstr("zeolite close"));
+
+  const Outcome alike = bench("fields nanosphere_90k");
+  EXPECT_EQ(alike.status, 1);
+  EXPECT_THAT(alike.err, HasSubstr("nanosphere_90k has one field and one species"));
+}
+
+TEST_F(Bench, LimitComparesWithThePeakOfTheMachine) {
+  const Outcome outcome = measure("limit zeolite --threads 2 --memory 1");
+  EXPECT_EQ(outcome.err, "");
+  const auto table = result("limit");
+  const auto peak = table["summary"]["peak"];
+  EXPECT_EQ(peak["threads"], 2);
+  const double lit = peak["lit_evaluations_per_second"];
+  EXPECT_GT(lit, 0);
+  for (const char* key : {"unlit_evaluations_per_second", "time_stamp_ticks_per_second",
+                          "read_bytes_per_second", "copied_bytes_per_second"}) {
+    EXPECT_GT(peak[key].get<double>(), 0) << key;
+  }
+  ASSERT_EQ(table["rows"].size(), 2U);
+  for (const auto& row : table["rows"]) {
+    EXPECT_EQ(row["lighting"], true);
+    double stages = 0;
+    for (const auto& stage : row["stages"].items()) stages += stage.value().get<double>();
+    EXPECT_NEAR(stages, 1, 1e-9);
+    EXPECT_GT(row["stages"]["sums"], 0);
+    // The same by hand, all lanes counted.
+    const double lanes = row["sweep"]["kernel_evaluations"];
+    const double seconds = 1e-3 * row["sweep"]["frame_ms"].get<double>();
+    EXPECT_NEAR(row["peak_fraction_lanes"].get<double>(), lanes / lit / seconds, 1e-9);
+    EXPECT_GT(row["ticks_per_lane"].get<double>(), 0);
+    if (row["evaluations_inside"].is_null()) continue;  // the engine does not count them
+    EXPECT_LT(row["evaluations_inside"], lanes);
+    EXPECT_LT(row["peak_fraction_inside"], row["peak_fraction_lanes"]);
+  }
+  EXPECT_THAT(workspace_.read("out/bench/limit.svg"), HasSubstr("zeolite close"));
+  EXPECT_THAT(workspace_.read("out/bench/limit_stages.svg"), Not(HasSubstr("nan")));
+}
+
+TEST_F(Bench, LimitMeasuresTheInstructionSetThatIsForced) {
+  ::setenv("MOTES_TARGET", "SSE4", 1);
+  measure("limit zeolite --memory 1");
+  ::unsetenv("MOTES_TARGET");
+  EXPECT_EQ(result("limit")["machine"]["instruction_set"], "SSE4");
+  EXPECT_EQ(result("limit")["summary"]["peak"]["lanes"], 4);
 }
 
 TEST_F(Bench, Fig6CutsOutOnePartAfterTheOther) {
@@ -143,7 +221,7 @@ TEST_F(Bench, Fig8AndFig9MakePictures) {
 }
 
 TEST_F(Bench, ASceneTooLargeForTheMemoryIsRefusedFirst) {
-  for (const std::string what : {"scenes", "table1", "table2"}) {
+  for (const std::string what : {"scenes", "table1", "table2", "fields"}) {
     EXPECT_THAT(failure("bench " + what + " tryptophan cosmology --memory 2" + data, 1),
                 StartsWith("motes: error: cosmology: 82051072 particles need "));
   }

@@ -75,6 +75,19 @@ class Drawing {
   std::string body_;
 };
 
+/// From the name of a series to the next one's.
+double caption_width(const std::string& name) {
+  return 30 + 6.4 * static_cast<double>(name.size());
+}
+
+/// What draw_captions() needs, margins included.
+template <class Series>
+double captions_width(const std::string& title, const std::vector<Series>& series) {
+  double names = 0;
+  for (const Series& each : series) names += caption_width(each.name);
+  return left + std::max(8.0 * static_cast<double>(title.size()), names) + right;
+}
+
 /// Title, name of the vertical axis and the names of the series with their colours.
 template <class Series>
 void draw_captions(Drawing& drawing, const std::string& title, const std::string& value_name,
@@ -85,7 +98,7 @@ void draw_captions(Drawing& drawing, const std::string& title, const std::string
   for (std::size_t s = 0; s < series.size(); ++s) {
     drawing.rectangle(x, 36, 12, 12, colors[s % colors.size()]);
     drawing.text(x + 17, 46, series[s].name, "start");
-    x += 30 + 6.4 * static_cast<double>(series[s].name.size());
+    x += caption_width(series[s].name);
   }
 }
 
@@ -117,7 +130,8 @@ std::string to_svg(const BarChart& chart) {
   };
   const double group = bar * static_cast<double>(chart.series.size()) + gap;
   const double width = group * static_cast<double>(chart.categories.size());
-  Drawing drawing(std::max(left + width + right, 520.0), top + plot_height + label_height);
+  Drawing drawing(std::max(left + width + right, captions_width(chart.title, chart.series)),
+                  top + plot_height + label_height);
   draw_captions(drawing, chart.title, chart.value_name, chart.series);
   for (double decade = first; decade <= last; ++decade) {
     const double y = top + plot_height - height_of(std::pow(10, decade));
@@ -186,7 +200,8 @@ std::string to_svg(const LineChart& chart) {
   const auto to_x = [&](double x) { return left + width * x_axis.place(x); };
   const auto to_y = [&](double y) { return top + plot_height * (1 - y_axis.place(y)); };
 
-  Drawing drawing(left + width + right, top + plot_height + label_height);
+  Drawing drawing(std::max(left + width + right, captions_width(chart.title, chart.series)),
+                  top + plot_height + label_height);
   draw_captions(drawing, chart.title, chart.y_name, chart.series);
   for (const double y : y_axis.ticks()) {
     drawing.line(left, to_y(y), left + width, to_y(y), "#ddd");

@@ -4,6 +4,8 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -25,6 +27,8 @@ constexpr const char* examples =
   scenes    make the particles of the scenes
   table1    their sizes, memory and build times, beside the paper's Table 1
   table2    frames per second of all engines, far and close, beside the paper's Table 2
+  fields    what more fields cost: particles shared out among them, or all in two
+  limit     what part of the machine's peak the sweep reaches, and where the rest goes
   fig6      frames per second from a thousand to all particles of the cosmological box
   fig7      frames per second with rays that end early or late, and with passes of many samples
   fig8      pictures for several kernel scales (kappa), and their frames per second
@@ -43,18 +47,19 @@ Examples:
 struct Benchmark {
   std::string_view name;
   void (*run)(const BenchJob&);
-  /// The scene that it takes where none is named; "": all.
-  std::string_view default_scene;
-  /// Whether it takes more than one.
-  bool many_scenes = true;
+  /// The scenes that it takes where none is named; none: all.
+  std::array<std::string_view, 3> default_scenes = {};
+  std::size_t most_scenes = std::numeric_limits<std::size_t>::max();
 };
-constexpr Benchmark benchmarks[] = {{"scenes", run_scenes, ""},
-                                    {"table1", run_table1, ""},
-                                    {"table2", run_table2, ""},
-                                    {"fig6", run_fig6, "cosmology", false},
-                                    {"fig7", run_fig7, "cosmology", false},
-                                    {"fig8", run_fig8, "nanobowl"},
-                                    {"fig9", run_fig9, "nanobowl"}};
+constexpr Benchmark benchmarks[] = {{"scenes", run_scenes},
+                                    {"table1", run_table1},
+                                    {"table2", run_table2},
+                                    {"fields", run_fields, {"zeolite", "tryptophan", "anp3"}},
+                                    {"limit", run_limit},
+                                    {"fig6", run_fig6, {"cosmology"}, 1},
+                                    {"fig7", run_fig7, {"cosmology"}, 1},
+                                    {"fig8", run_fig8, {"nanobowl"}},
+                                    {"fig9", run_fig9, {"nanobowl"}}};
 
 struct Options {
   std::string what, data = "data/bench", output = "out/bench";
@@ -86,6 +91,20 @@ const Benchmark& find_benchmark(const std::string& name) {
   throw unknown_name("benchmark", name, known);
 }
 
+/// The scenes that are named, or those that the benchmark takes by itself.
+std::vector<const BenchScene*> scenes_of(const Benchmark& benchmark,
+                                         std::vector<std::string> names) {
+  if (names.size() > benchmark.most_scenes) {
+    throw Error(fmt::format("{} takes one scene; {} are named", benchmark.name, names.size()));
+  }
+  if (names.empty()) {
+    for (const std::string_view name : benchmark.default_scenes) {
+      if (!name.empty()) names.emplace_back(name);
+    }
+  }
+  return find_bench_scenes(names);
+}
+
 void run(const Options& options) {
   instruction_set();  // tells at once of a MOTES_TARGET that is not to be had
   std::optional<tbb::global_control> limit;
@@ -99,14 +118,7 @@ void run(const Options& options) {
   Scene scene;
   options.size.apply(scene);
   const Benchmark& benchmark = find_benchmark(options.what);
-  std::vector<std::string> names = options.scenes;
-  if (names.empty() && !benchmark.default_scene.empty()) {
-    names.emplace_back(benchmark.default_scene);
-  }
-  BenchJob job{workplace, find_bench_scenes(names), options.bench};
-  if (!benchmark.many_scenes && job.scenes.size() > 1) {
-    throw Error(fmt::format("{} takes one scene; {} are named", benchmark.name, job.scenes.size()));
-  }
+  BenchJob job{workplace, scenes_of(benchmark, options.scenes), options.bench};
   job.options.width = scene.render.width;
   job.options.height = scene.render.height;
   benchmark.run(job);
@@ -126,8 +138,7 @@ void add_bench_command(CLI::App& program) {
       validator([](const std::string& name) { find_bench_scenes({name}); });
   CLI::Option* names = command
                            ->add_option("SCENE", options->scenes,
-                                        "which scenes (default: all,\nor cosmology for fig6 and "
-                                        "fig7, nanobowl for fig8 and fig9)")
+                                        "which scenes (default: all, or\nwhat docs/bench.md says)")
                            ->type_name("")
                            ->delimiter(',')
                            ->check(scene_name);

@@ -25,6 +25,16 @@ double mean_opacity(const Framebuffer& image) {
   return count > 0 ? sum / count : 0;
 }
 
+/// What a frame tells besides its time.
+void describe(const RenderStatistics& statistics, const Framebuffer& image, FrameTimes& out) {
+  out.samples = statistics.samples;
+  out.kernel_evaluations = statistics.kernel_evaluations;
+  out.opacity = mean_opacity(image);
+  out.samples_per_ray =
+      static_cast<double>(statistics.samples) / static_cast<double>(image.num_pixels());
+  out.threads = statistics.threads;
+}
+
 }  // namespace
 
 Input read_bench_particles(const BenchJob& job, const BenchScene& scene, Console& console) {
@@ -55,10 +65,10 @@ Camera moved_closer(const Camera& camera, double fraction) {
   return closer;
 }
 
-std::vector<Variant> engine_variants(const ResolvedScene& scene) {
+std::vector<Variant> engine_variants(const Renderer& renderer, const ResolvedScene& scene) {
   std::vector<Variant> variants;
   for (const Engine engine : {Engine::sweep, Engine::coherent}) {
-    variants.push_back({scene, std::nullopt});
+    variants.push_back({&renderer, scene});
     variants.back().scene.render.engine = engine;
   }
   return variants;
@@ -70,30 +80,31 @@ nlohmann::ordered_json to_json(const FrameTimes& times) {
           {"samples", times.samples},    {"kernel_evaluations", times.kernel_evaluations}};
 }
 
-std::vector<FrameTimes> measure_frames(const Renderer& renderer,
-                                       const std::vector<Variant>& variants,
+std::vector<FrameTimes> measure_frames(const std::vector<Variant>& variants,
                                        const BenchOptions& options, Console& console) {
   std::vector<FrameTimes> results(variants.size());
   std::vector<std::vector<double>> times(variants.size());
   Framebuffer image;
   for (int round = -1; round < options.repeat; ++round) {
     for (std::size_t v = 0; v < variants.size(); ++v) {
+      const Variant& variant = variants[v];
       const bool warm_up = round < 0;
       if (!warm_up && results[v].frames == 1) continue;  // it ran out of patience
+      RenderOptions render{options.threads, variant.samples_per_pass, &console};
       RenderStatistics statistics;
-      renderer.render(variants[v].scene, {options.threads, variants[v].samples_per_pass, &console},
-                      image, &statistics);
-      const bool too_long = statistics.frame_ms > variants[v].patience_ms;
-      if (!warm_up || too_long) times[v].push_back(statistics.frame_ms);
+      variant.renderer->render(variant.scene, render, image, &statistics);
+      const bool too_long = statistics.frame_ms > variant.patience_ms;
+      if (!warm_up || too_long) {
+        times[v].push_back(statistics.frame_ms);
+        results[v].stages.add(statistics.stages);
+      }
       if (!warm_up) continue;
-      FrameTimes& result = results[v];
-      result.frames = too_long ? 1 : 0;
-      result.samples = statistics.samples;
-      result.kernel_evaluations = statistics.kernel_evaluations;
-      result.opacity = mean_opacity(image);
-      result.samples_per_ray =
-          static_cast<double>(statistics.samples) / static_cast<double>(image.num_pixels());
-      result.threads = statistics.threads;
+      describe(statistics, image, results[v]);
+      results[v].frames = too_long ? 1 : 0;
+      if (!variant.count_inside) continue;
+      render.count_inside = true;
+      variant.renderer->render(variant.scene, render, image, &statistics);
+      results[v].evaluations_inside = statistics.evaluations_inside;
     }
   }
   console.finish();

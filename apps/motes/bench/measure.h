@@ -12,6 +12,7 @@
 #include "motes/console.h"
 #include "motes/input.h"
 #include "motes/prepare.h"
+#include "render/renderer.h"
 
 namespace motes {
 
@@ -27,21 +28,25 @@ Camera moved_closer(const Camera& camera, double fraction);
 
 /// One way of rendering to be measured.
 struct Variant {
+  const Renderer* renderer;  ///< outlives the variant
   ResolvedScene scene;
-  std::optional<int> samples_per_pass;  ///< see RenderOptions
+  std::optional<int> samples_per_pass = std::nullopt;  ///< see RenderOptions
   /// A warm-up frame that takes longer is the only one, and counts.
   double patience_ms = std::numeric_limits<double>::infinity();
+  bool count_inside = false;  ///< fills FrameTimes::evaluations_inside, by a frame of its own
 };
 
 /// `scene` with sweep, then with coherent.
-std::vector<Variant> engine_variants(const ResolvedScene& scene);
+std::vector<Variant> engine_variants(const Renderer& renderer, const ResolvedScene& scene);
 
 struct FrameTimes {
   double median_ms = 0, min_ms = 0;
   int frames = 0;
   std::uint64_t samples = 0, kernel_evaluations = 0;
-  double opacity = 0;          ///< mean of the pixels in which there is anything
-  double samples_per_ray = 0;  ///< the mean of all pixels
+  std::uint64_t evaluations_inside = 0;  ///< 0 where they are not counted
+  StageTicks stages;                     ///< of the timed frames together
+  double opacity = 0;                    ///< mean of the pixels in which there is anything
+  double samples_per_ray = 0;            ///< the mean of all pixels
   int threads = 0;
 
   double fps() const { return 1000 / median_ms; }
@@ -51,8 +56,7 @@ nlohmann::ordered_json to_json(const FrameTimes& times);
 
 /// Times `variants` in turn, frame by frame, so that whatever else the machine does meets them
 /// alike; each is warmed up by a frame. One result a variant.
-std::vector<FrameTimes> measure_frames(const Renderer& renderer,
-                                       const std::vector<Variant>& variants,
+std::vector<FrameTimes> measure_frames(const std::vector<Variant>& variants,
                                        const BenchOptions& options, Console& console);
 
 double geometric_mean(const std::vector<double>& values);

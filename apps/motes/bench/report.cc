@@ -52,6 +52,11 @@ std::string describe_measurement(const BenchOptions& options) {
 }
 
 void write_results(const BenchJob& job, std::string_view name, const nlohmann::ordered_json& rows) {
+  write_results(job, name, rows, nlohmann::ordered_json::object());
+}
+
+void write_results(const BenchJob& job, std::string_view name, const nlohmann::ordered_json& rows,
+                   const nlohmann::ordered_json& summary) {
   utsname system{};
   ::uname(&system);
   const BenchOptions& options = job.options;
@@ -70,6 +75,7 @@ void write_results(const BenchJob& job, std::string_view name, const nlohmann::o
         {"height", options.height},
         {"repeat", options.repeat},
         {"threads", threads_of(options)}}},
+      {"summary", summary},
       {"rows", rows}};
   write_result_file(job, fmt::format("{}.json", name), all.dump(1) + "\n");
 }

@@ -15,8 +15,11 @@ std::string machine_line(const BenchOptions& options);
 /// The same with the size of the frames and how many are timed.
 std::string describe_measurement(const BenchOptions& options);
 
-/// Writes `rows`, with the machine and the settings, to NAME.json of the results.
+/// Writes `rows`, with the machine and the settings, to NAME.json of the results; `summary`, an
+/// object, holds what is said of all rows together.
 void write_results(const BenchJob& job, std::string_view name, const nlohmann::ordered_json& rows);
+void write_results(const BenchJob& job, std::string_view name, const nlohmann::ordered_json& rows,
+                   const nlohmann::ordered_json& summary);
 
 /// Writes `text` to the result file `name` and says so on the standard output.
 void write_result_file(const BenchJob& job, std::string_view name, std::string_view text);

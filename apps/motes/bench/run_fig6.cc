@@ -40,9 +40,9 @@ Row measure_row(PreparedScene& prepared, double sigma, double paper_fps, const B
     kernel.support_factor = sigma;
     renderer.set_kernel(field, kernel);
   }
-  std::vector<Variant> variants = engine_variants(prepared.resolved);
+  std::vector<Variant> variants = engine_variants(renderer, prepared.resolved);
   for (Variant& variant : variants) variant.patience_ms = 5000;
-  const std::vector<FrameTimes> times = measure_frames(renderer, variants, job.options, console);
+  const std::vector<FrameTimes> times = measure_frames(variants, job.options, console);
   return {renderer.kernels().size(), sigma, paper_fps, times[0], times[1]};
 }
 

@@ -33,9 +33,9 @@ void measure_termination(const BenchJob& job, const Renderer& renderer, const Vi
   for (const double opacity : opacities) {
     ResolvedScene scene = view.scene;
     scene.render.termination_opacity = opacity;
-    std::vector<Variant> variants = engine_variants(scene);
+    std::vector<Variant> variants = engine_variants(renderer, scene);
     for (Variant& variant : variants) variant.patience_ms = patience_ms;
-    const std::vector<FrameTimes> times = measure_frames(renderer, variants, job.options, console);
+    const std::vector<FrameTimes> times = measure_frames(variants, job.options, console);
     fmt::print("{:<7}{:>8}{:>9.1f}{:>9.2f}{:>10.2f}{:>8.2f}\n", view.name,
                opacity < 1 ? fmt::format("{:.2f}", opacity) : "never", times[0].samples_per_ray,
                times[0].fps(), times[1].fps(), times[1].median_ms / times[0].median_ms);
@@ -57,9 +57,9 @@ void measure_passes(const BenchJob& job, const Renderer& renderer, const View& v
   const auto measure = [&](Engine engine, const auto& passes) {
     chart.series.push_back({fmt::format("{}, {}", name_of(engine), view.name), {}});
     for (const int planes : passes) {
-      Variant variant{view.scene, planes, patience_ms};
+      Variant variant{&renderer, view.scene, planes, patience_ms};
       variant.scene.render.engine = engine;
-      const FrameTimes times = measure_frames(renderer, {variant}, job.options, console)[0];
+      const FrameTimes times = measure_frames({variant}, job.options, console)[0];
       fmt::print("{:<7}{:<10}{:>8}{:>9.2f}\n", view.name, name_of(engine), planes, times.fps());
       std::fflush(stdout);
       chart.series.back().points.emplace_back(planes, times.fps());

@@ -37,7 +37,7 @@ void run(const BenchJob& job, const Sweep& sweep) {
         renderer.set_kernel(field, kernel);
       }
       const std::vector<FrameTimes> times =
-          measure_frames(renderer, engine_variants(prepared.resolved), job.options, console);
+          measure_frames(engine_variants(renderer, prepared.resolved), job.options, console);
       const std::filesystem::path picture = job.workplace.result(
           fmt::format("{}_{}_{}_{:g}.png", sweep.figure, entry->name, sweep.name, value));
       const RenderSettings& settings = prepared.resolved.render;

@@ -2,10 +2,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "motes/bench/chart.h"
@@ -15,16 +17,23 @@
 namespace motes {
 namespace {
 
+/// Sweep and coherent, with or without lighting.
+struct Pair {
+  FrameTimes sweep, coherent;
+  double ratio() const { return coherent.median_ms / sweep.median_ms; }
+};
+
 /// What is measured of one scene from one camera.
 struct Row {
   const BenchScene* scene;
   bool close;
   Camera camera;
-  FrameTimes sweep, coherent;
-  std::optional<FrameTimes> direct;
+  Pair lit, unlit;
+  std::optional<FrameTimes> direct;  ///< lit
 
   std::string_view view() const { return close ? "close" : "far"; }
-  double ratio() const { return coherent.median_ms / sweep.median_ms; }
+  /// How many times longer the sweep takes with lighting.
+  double lit_over_unlit() const { return lit.sweep.median_ms / unlit.sweep.median_ms; }
   std::optional<double> paper_fps(const std::optional<FarClose>& fps) const {
     if (!fps) return std::nullopt;
     return close ? fps->close : fps->far;
@@ -35,15 +44,22 @@ Row measure_row(const BenchJob& job, const BenchScene& entry, const PreparedScen
                 bool close, Console& console) {
   ResolvedScene scene = prepared.resolved;
   if (close) scene.camera = moved_closer(scene.camera, entry.close);
-  const std::vector<FrameTimes> times =
-      measure_frames(prepared.renderer, engine_variants(scene), job.options, console);
-  Row row{&entry, close, scene.camera, times[0], times[1], std::nullopt};
+  std::vector<Variant> variants;
+  for (const bool lit : {true, false}) {
+    scene.render.lighting.enabled = lit;
+    for (Variant& variant : engine_variants(prepared.renderer, scene)) {
+      variants.push_back(std::move(variant));
+    }
+  }
+  const std::vector<FrameTimes> times = measure_frames(variants, job.options, console);
+  Row row{&entry, close, scene.camera, {times[0], times[1]}, {times[2], times[3]}, std::nullopt};
   // Direct takes about eight times as long as coherent.
   constexpr double patience_ms = 2000;
-  if (row.coherent.median_ms <= patience_ms) {
-    Variant direct{scene, std::nullopt, patience_ms};
+  if (row.lit.coherent.median_ms <= patience_ms) {
+    Variant direct = variants[0];
+    direct.patience_ms = patience_ms;
     direct.scene.render.engine = Engine::direct;
-    row.direct = measure_frames(prepared.renderer, {direct}, job.options, console)[0];
+    row.direct = measure_frames({direct}, job.options, console)[0];
   }
   return row;
 }
@@ -53,12 +69,14 @@ std::string or_dash(const std::optional<double>& value) {
 }
 
 void print_header() {
-  fmt::print("{:<16}{:<6}{:>10}{:>8}{:>8}  |{:>8}{:>10}{:>8}  |{:>7}{:>8}  |{:>7}{:>7}{:>7}\n", "",
-             "", "", "mean", "samples", "frames", "a second", "", "sweep/", "coher./", "paper:", "",
-             "sweep/");
-  fmt::print("{:<16}{:<6}{:>10}{:>8}{:>8}  |{:>8}{:>10}{:>8}  |{:>7}{:>8}  |{:>7}{:>7}{:>7}\n",
-             "scene", "view", "particles", "opacity", "a ray", "sweep", "coherent", "direct",
-             "coher.", "direct", "MIC", "CPU", "CPU");
+  constexpr const char* format =
+      "{:<16}{:<6}{:>10}{:>8}{:>8}  |{:>8}{:>10}{:>8}{:>8}{:>8}  |{:>8}{:>10}{:>8}{:>7}  |"
+      "{:>7}{:>7}{:>7}\n";
+  fmt::print(format, "", "", "", "mean", "samples", "lit,", "frames a", "second", "sweep/",
+             "coher./", "unlit,", "the same", "sweep/", "lit/", "paper:", "", "sweep/");
+  fmt::print(format, "scene", "view", "particles", "opacity", "a ray", "sweep", "coherent",
+             "direct", "coher.", "direct", "sweep", "coherent", "coher.", "unlit", "MIC", "CPU",
+             "CPU");
 }
 
 void print(const Row& row) {
@@ -66,16 +84,23 @@ void print(const Row& row) {
   std::optional<double> direct, over_direct, over_paper;
   if (row.direct) {
     direct = row.direct->fps();
-    over_direct = row.direct->median_ms / row.coherent.median_ms;
+    over_direct = row.direct->median_ms / row.lit.coherent.median_ms;
   }
-  if (cpu) over_paper = row.sweep.fps() / *cpu;
-  fmt::print(
-      "{:<16}{:<6}{:>10}{:>8.2f}{:>8.1f}  |{:>8.2f}{:>10.2f}{:>8}  |{:>7.2f}{:>8}  |{:>7}{:>7}{:>7}"
-      "\n",
-      row.scene->name, row.view(), row.scene->particles, row.sweep.opacity,
-      row.sweep.samples_per_ray, row.sweep.fps(), row.coherent.fps(), or_dash(direct), row.ratio(),
-      or_dash(over_direct), or_dash(mic), or_dash(cpu), or_dash(over_paper));
+  if (cpu) over_paper = row.lit.sweep.fps() / *cpu;
+  fmt::print("{:<16}{:<6}{:>10}{:>8.2f}{:>8.1f}  |{:>8.2f}{:>10.2f}{:>8}{:>8.2f}{:>8}  |",
+             row.scene->name, row.view(), row.scene->particles, row.lit.sweep.opacity,
+             row.lit.sweep.samples_per_ray, row.lit.sweep.fps(), row.lit.coherent.fps(),
+             or_dash(direct), row.lit.ratio(), or_dash(over_direct));
+  fmt::print("{:>8.2f}{:>10.2f}{:>8.2f}{:>7.2f}  |{:>7}{:>7}{:>7}\n", row.unlit.sweep.fps(),
+             row.unlit.coherent.fps(), row.unlit.ratio(), row.lit_over_unlit(), or_dash(mic),
+             or_dash(cpu), or_dash(over_paper));
   std::fflush(stdout);
+}
+
+nlohmann::ordered_json to_json(const Pair& pair) {
+  return {{"sweep", to_json(pair.sweep)},
+          {"coherent", to_json(pair.coherent)},
+          {"coherent_over_sweep", pair.ratio()}};
 }
 
 nlohmann::ordered_json to_json(const Row& row, const BenchJob& job, const PreparedScene& prepared) {
@@ -89,13 +114,12 @@ nlohmann::ordered_json to_json(const Row& row, const BenchJob& job, const Prepar
                              {"eye", triple(row.camera.eye)},
                              {"target", triple(row.camera.target)},
                              {"step_size", prepared.resolved.step_size},
-                             {"lighting", prepared.resolved.render.lighting.enabled},
-                             {"mean_opacity", row.sweep.opacity},
-                             {"samples_per_ray", row.sweep.samples_per_ray},
-                             {"sweep", to_json(row.sweep)},
-                             {"coherent", to_json(row.coherent)},
+                             {"mean_opacity", row.lit.sweep.opacity},
+                             {"samples_per_ray", row.lit.sweep.samples_per_ray},
+                             {"lit", to_json(row.lit)},
                              {"direct", nullptr},
-                             {"coherent_over_sweep", row.ratio()},
+                             {"unlit", to_json(row.unlit)},
+                             {"lit_over_unlit", row.lit_over_unlit()},
                              {"paper_cpu_fps", nullptr},
                              {"paper_mic_fps", nullptr}};
   if (row.direct) out["direct"] = to_json(*row.direct);
@@ -106,11 +130,26 @@ nlohmann::ordered_json to_json(const Row& row, const BenchJob& job, const Prepar
 
 void add_to_chart(const Row& row, BarChart& chart) {
   chart.categories.push_back(fmt::format("{} {}", row.scene->name, row.view()));
-  chart.series[0].values.emplace_back(row.sweep.fps());
-  chart.series[1].values.emplace_back(row.coherent.fps());
-  chart.series[2].values.push_back(row.direct ? std::optional<double>(row.direct->fps())
-                                              : std::nullopt);
-  chart.series[3].values.push_back(row.paper_fps(row.scene->paper.cpu));
+  const std::optional<double> values[] = {
+      row.lit.sweep.fps(),
+      row.lit.coherent.fps(),
+      row.unlit.sweep.fps(),
+      row.unlit.coherent.fps(),
+      row.direct ? std::optional<double>(row.direct->fps()) : std::nullopt,
+      row.paper_fps(row.scene->paper.cpu)};
+  for (std::size_t s = 0; s < std::size(values); ++s) chart.series[s].values.push_back(values[s]);
+}
+
+/// Prints a ratio of all rows, which is what the results say of it too.
+template <class Ratio>
+nlohmann::ordered_json summarise(std::string_view name, const std::vector<Row>& rows,
+                                 const Ratio& ratio_of) {
+  std::vector<double> ratios;
+  std::ranges::transform(rows, std::back_inserter(ratios), ratio_of);
+  const double mean = geometric_mean(ratios);
+  const auto [least, most] = std::ranges::minmax(ratios);
+  fmt::print("{}: {:.2f} in the geometric mean, {:.2f} to {:.2f}\n", name, mean, least, most);
+  return {{"geometric_mean", mean}, {"least", least}, {"most", most}};
 }
 
 }  // namespace
@@ -119,26 +158,36 @@ void run_table2(const BenchJob& job) {
   job.workplace.check_room(job.scenes);
   fmt::print("{}\n\n", describe_measurement(job.options));
   print_header();
-  nlohmann::ordered_json rows = nlohmann::json::array();
+  std::vector<Row> rows;
+  nlohmann::ordered_json results = nlohmann::json::array();
   BarChart chart{"Frames per second",
                  "frames per second",
                  {},
-                 {{"sweep", {}}, {"coherent", {}}, {"direct", {}}, {"paper, 16 cores", {}}}};
-  std::vector<double> ratios;
+                 {{"sweep, lit", {}},
+                  {"coherent, lit", {}},
+                  {"sweep, unlit", {}},
+                  {"coherent, unlit", {}},
+                  {"direct, lit", {}},
+                  {"paper, 16 cores", {}}}};
   for (const BenchScene* entry : job.scenes) {
     Console console;
     const PreparedScene prepared = prepare_bench_scene(job, *entry, console);
     for (const bool close : {false, true}) {
-      const Row row = measure_row(job, *entry, prepared, close, console);
-      print(row);
-      rows.push_back(to_json(row, job, prepared));
-      add_to_chart(row, chart);
-      ratios.push_back(row.ratio());
+      rows.push_back(measure_row(job, *entry, prepared, close, console));
+      print(rows.back());
+      results.push_back(to_json(rows.back(), job, prepared));
+      add_to_chart(rows.back(), chart);
     }
   }
-  fmt::print("\nsweep / coherent: {:.2f} in the geometric mean, {:.2f} at least\n",
-             geometric_mean(ratios), *std::ranges::min_element(ratios));
-  write_results(job, "table2", rows);
+  fmt::print("\n");
+  nlohmann::ordered_json summary;
+  summary["coherent_over_sweep_lit"] =
+      summarise("sweep / coherent, lit", rows, [](const Row& row) { return row.lit.ratio(); });
+  summary["coherent_over_sweep_unlit"] =
+      summarise("sweep / coherent, unlit", rows, [](const Row& row) { return row.unlit.ratio(); });
+  summary["lit_over_unlit"] = summarise("lit / unlit, time of the sweep", rows,
+                                        [](const Row& row) { return row.lit_over_unlit(); });
+  write_results(job, "table2", results, summary);
   write_result_file(job, "table2.svg", to_svg(chart));
 }
 

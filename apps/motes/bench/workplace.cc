@@ -14,9 +14,6 @@
 namespace motes {
 namespace {
 
-/// Most that is in memory at once, for each particle: while its file is read, the file and
-/// positions in double precision. Measured: 59.
-constexpr std::size_t bytes_per_particle = 64;
 constexpr double gibibyte = 1024.0 * 1024 * 1024;
 
 /// What the system can still give; the largest number where it does not say.
@@ -45,6 +42,8 @@ Workplace::Workplace(std::filesystem::path data, std::filesystem::path output,
   if (error) throw Error(output_, fmt::format("cannot be made: {}", error.message()));
 }
 
+std::size_t Workplace::memory() const { return memory_ ? *memory_ : free_memory(); }
+
 std::filesystem::path Workplace::scene_file(const BenchScene& scene) const {
   return data_ / fmt::format("{}.json", scene.name);
 }
@@ -60,17 +59,18 @@ Scene Workplace::open(const BenchScene& scene) const {
   return opened;
 }
 
-void Workplace::check_room(const std::vector<const BenchScene*>& scenes) const {
-  const std::size_t memory = memory_.value_or(free_memory());
+void Workplace::check_room(const std::vector<const BenchScene*>& scenes,
+                           std::size_t bytes_per_particle) const {
+  const std::size_t available = memory();
   std::size_t disk = 0;
   for (const BenchScene* scene : scenes) {
     const std::size_t needed = scene->particles * bytes_per_particle;
-    if (needed > memory) {
+    if (needed > available) {
       throw Error(
           fmt::format("{}: {} particles need {:.1f} GiB of memory, and there are {:.1f}; "
                       "choose other scenes by --scenes",
                       scene->name, scene->particles, static_cast<double>(needed) / gibibyte,
-                      static_cast<double>(memory) / gibibyte));
+                      static_cast<double>(available) / gibibyte));
     }
     if (scene->is_made() && !std::filesystem::exists(particle_file(*scene))) {
       disk += scene->particles * scene->row_bytes;

@@ -1,0 +1,15 @@
+# motes_simd_sources(FILE...): sources that Highway compiles once for each instruction set. One build serves
+# every x86 machine: SSE4, AVX2, AVX-512 (Highway's AVX3), chosen at run time, the same for all sources.
+function(motes_simd_sources)
+  set_source_files_properties(${ARGN} PROPERTIES
+    COMPILE_DEFINITIONS "HWY_DISABLED_TARGETS=(HWY_SSSE3 | HWY_AVX3_DL)")
+  # SSE4 is the least that is asked for, so that no scalar copy is built beside it.
+  if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+    set_source_files_properties(${ARGN} PROPERTIES
+      COMPILE_OPTIONS "-msse4.2;-maes;-mpclmul;$<$<CONFIG:Release>:-O3>")
+  endif()
+  # GCC 12 warns of its own AVX-512 intrinsics, which start from undefined vectors on purpose.
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    set_property(SOURCE ${ARGN} APPEND PROPERTY COMPILE_OPTIONS -Wno-maybe-uninitialized)
+  endif()
+endfunction()
