@@ -14,9 +14,6 @@
 namespace motes {
 namespace {
 
-/// Most that is in memory at once, for each particle: while its file is read, the file and
-/// positions in double precision. Measured: 59.
-constexpr std::size_t bytes_per_particle = 64;
 constexpr double gibibyte = 1024.0 * 1024 * 1024;
 
 /// What the system can still give; the largest number where it does not say.
@@ -60,7 +57,8 @@ Scene Workplace::open(const BenchScene& scene) const {
   return opened;
 }
 
-void Workplace::check_room(const std::vector<const BenchScene*>& scenes) const {
+void Workplace::check_room(const std::vector<const BenchScene*>& scenes,
+                           std::size_t bytes_per_particle) const {
   const std::size_t memory = memory_.value_or(free_memory());
   std::size_t disk = 0;
   for (const BenchScene* scene : scenes) {
