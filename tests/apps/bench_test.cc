@@ -114,8 +114,10 @@ TEST_F(Bench, BuildTimesTheTreeAndCountsItsMemory) {
   }
   // 5750 leaves; nodes of 224 bytes, level by level.
   EXPECT_EQ(motes["tree_bytes"], (719 + 90 + 12 + 2 + 1) * 224);
-  EXPECT_GT(motes["bytes_per_particle"].get<double>(), 14);
-  // About 40; the system counts pages of small processes in large steps.
+  // Positions besides: all have one radius and one weight.
+  EXPECT_NEAR(motes["bytes_per_particle"].get<double>(),
+              12 + motes["tree_bytes_per_particle"].get<double>(), 0.01);
+  // About 32; the system counts pages of small processes in large steps.
   EXPECT_GT(motes["peak_bytes_per_particle"].get<double>(), 20);
   for (const char* chart : {"out/bench/build.svg", "out/bench/build_memory.svg"}) {
     EXPECT_THAT(workspace_.read(chart), StartsWith("<svg "));
