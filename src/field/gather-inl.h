@@ -77,7 +77,7 @@ HWY_NOINLINE void gather_kernels(const KernelSet& kernels, const SamplingConstan
     for (std::size_t i = 0; i < Bvh::leaf_size; i += hn::Lanes(d)) {
       const std::size_t at = leaf * Bvh::leaf_size + i;
       const Centers<Lanes> centers = place_centers(d, kernels, at, frame);
-      const Lanes radius = hn::Load(d, kernels.radius.data() + at);
+      const Lanes radius = hn::Load(d, kernels.radius.from(at));
       const Lanes support = hn::Mul(radius, hn::Set(d, constants.max_support_factor));
       const LaneMask reaches = find_reach(d, frame, frustum, centers, support).any;
       const auto index = numbers_from(static_cast<std::uint32_t>(at));

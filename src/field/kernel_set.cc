@@ -9,6 +9,7 @@
 #include <iterator>
 #include <limits>
 #include <numbers>
+#include <optional>
 
 #include "core/error.h"
 
@@ -25,8 +26,8 @@ double FieldKernels::peak_factor() const {
 }
 
 std::size_t KernelSet::particle_bytes() const {
-  const std::size_t floats = x.size() + y.size() + z.size() + radius.size() + weight.size();
-  return floats * sizeof(float) + field.size();
+  const std::size_t coordinates = x.size() + y.size() + z.size();
+  return coordinates * sizeof(float) + radius.bytes() + weight.bytes() + field.size();
 }
 
 Bounds3d KernelSet::box() const {
@@ -97,14 +98,14 @@ RadiusRange radius_range(const FieldSource& source) {
 }
 
 struct WeightRange {
-  double max = 0;  ///< magnitude
-  bool positive = false, negative = false;
+  double min = std::numeric_limits<double>::infinity();
+  double max = -std::numeric_limits<double>::infinity();
 
   void add(const WeightRange& other) {
+    min = std::min(min, other.min);
     max = std::max(max, other.max);
-    positive = positive || other.positive;
-    negative = negative || other.negative;
   }
+  double magnitude() const { return std::max({-min, max, 0.0}); }
 };
 
 /// Of effective weights.
@@ -112,19 +113,19 @@ WeightRange weight_range(const FieldSource& source, double length_scale) {
   const std::size_t different =
       source.index.empty() ? 0 : std::max(source.radius.size(), source.weight.size());
   return reduce_all<WeightRange>(different, [&](std::size_t i, WeightRange& range) {
-    const double radius = source.radius_of(i) * length_scale;
+    const float radius = source.radius_of(i) * static_cast<float>(length_scale);
     const double weight = effective_weight(source, i, radius, length_scale);
-    range.add({std::abs(weight), weight > 0, weight < 0});
+    range.add({weight, weight});
   });
 }
 
-FieldKernels summarise(const FieldSource& source, const RadiusRange& radii, double length_scale) {
+FieldKernels summarise(const FieldSource& source, const RadiusRange& radii,
+                       const WeightRange& weights, double length_scale) {
   FieldKernels field{.name = source.name, .kernel = source.kernel, .normalise = source.normalise};
-  const WeightRange weights = weight_range(source, length_scale);
   field.min_radius = static_cast<float>(radii.min * length_scale);
   field.max_radius = radii.max;
-  field.mixed_signs = weights.positive && weights.negative;
-  field.value_scale = unit_scale(weights.max);
+  field.mixed_signs = weights.min < 0 && weights.max > 0;
+  field.value_scale = unit_scale(weights.magnitude());
   return field;
 }
 
@@ -151,12 +152,31 @@ void set_centers(const ParticleSet& particles, const Bounds3d& box, KernelSet& s
   set.centers = {box.min + shift, box.max + shift};
 }
 
-void set_fields(const std::vector<FieldSource>& fields, const std::vector<RadiusRange>& ranges,
-                KernelSet& set) {
+/// The internal radius and weight that all kernels of all fields have, where they have the same.
+struct CommonValues {
+  std::optional<float> radius, weight;
+};
+
+/// Describes the fields in `set`, and finds what their kernels have in common.
+CommonValues set_fields(const std::vector<FieldSource>& fields,
+                        const std::vector<RadiusRange>& ranges, KernelSet& set) {
+  const auto scale = static_cast<float>(set.length_scale);
+  RadiusRange radius;
+  WeightRange weight;
   set.fields.clear();
   for (std::size_t f = 0; f < fields.size(); ++f) {
-    set.fields.push_back(summarise(fields[f], ranges[f], set.length_scale));
+    const WeightRange weights = weight_range(fields[f], set.length_scale);
+    set.fields.push_back(summarise(fields[f], ranges[f], weights, set.length_scale));
+    if (fields[f].index.empty()) continue;
+    // Rounded as place_kernels() rounds each kernel's: ends that are equal leave nothing between.
+    const double unit = set.fields[f].value_scale;
+    radius.add({ranges[f].min * scale, ranges[f].max * scale});
+    weight.add({static_cast<float>(weights.min * unit), static_cast<float>(weights.max * unit)});
   }
+  CommonValues common;
+  if (radius.min == radius.max) common.radius = radius.min;
+  if (weight.min == weight.max) common.weight = static_cast<float>(weight.min);
+  return common;
 }
 
 /// Where each field's kernels begin in the order of the sources, one field after another, and at
@@ -198,7 +218,20 @@ UninitializedVector<Sphere> gather(const ParticleSet& particles,
 /// Far outside every data set (internal lengths are near 1), and its square is still finite.
 constexpr float far_away = 1e15f;
 
-/// Sizes the arrays for n kernels, and pads them.
+/// Room for the radii and weights of n kernels, as far as they differ.
+void allocate_values(std::size_t n, const CommonValues& common, KernelSet& set) {
+  const auto allocate = [n](PerKernel& values, const std::optional<float>& one) {
+    if (one) {
+      values.share(*one);
+    } else {
+      values.allocate(n);
+    }
+  };
+  allocate(set.radius, common.radius);
+  allocate(set.weight, common.weight);
+}
+
+/// Sizes the other arrays for n kernels, and pads them.
 void allocate_kernels(std::size_t n, KernelSet& set) {
   const std::size_t padded = (n + Bvh::leaf_size - 1) / Bvh::leaf_size * Bvh::leaf_size;
   const auto allocate = [&](auto& array, auto padding) {
@@ -206,7 +239,6 @@ void allocate_kernels(std::size_t n, KernelSet& set) {
     std::fill(array.begin() + static_cast<std::ptrdiff_t>(n), array.end(), padding);
   };
   for (auto* array : {&set.x, &set.y, &set.z}) allocate(*array, far_away);
-  for (auto* array : {&set.radius, &set.weight}) allocate(*array, 0.0f);
   if (set.fields.size() > 1) allocate(set.field, std::uint8_t{0});
 }
 
@@ -215,6 +247,7 @@ void place_kernels(std::span<const Sphere> spheres, const KernelOrder& order,
                    const std::vector<FieldSource>& fields, KernelSet& set) {
   constexpr std::size_t ahead = 32;  // spheres are asked for so long before they are used
   const std::size_t n = order.kernels.size();
+  const bool radii = !set.radius.is_shared(), weights = !set.weight.is_shared();
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, grain), [&](const auto& range) {
     for (std::size_t i = range.begin(); i != range.end(); ++i) {
       if (i + ahead < n) __builtin_prefetch(&spheres[order.kernels[i + ahead]]);
@@ -225,10 +258,12 @@ void place_kernels(std::span<const Sphere> spheres, const KernelOrder& order,
       set.x[i] = sphere.x;
       set.y[i] = sphere.y;
       set.z[i] = sphere.z;
-      set.radius[i] = sphere.radius;
-      const double weight =
-          effective_weight(fields[f], k - order.begins[f], sphere.radius, set.length_scale);
-      set.weight[i] = static_cast<float>(weight * set.fields[f].value_scale);
+      if (radii) set.radius.at(i) = sphere.radius;
+      if (weights) {
+        const double weight =
+            effective_weight(fields[f], k - order.begins[f], sphere.radius, set.length_scale);
+        set.weight.at(i) = static_cast<float>(weight * set.fields[f].value_scale);
+      }
       if (!set.field.empty()) set.field[i] = static_cast<std::uint8_t>(f);
     }
   });
@@ -258,7 +293,7 @@ KernelSet build_kernel_set(const ParticleSet& particles, const std::vector<Field
   set_centers(particles, {Point3d(box.min), Point3d(box.max)}, set);
   const std::vector<RadiusRange> ranges = radius_ranges(fields);
   set.length_scale = unit_scale(largest_length(set.centers, ranges));
-  set_fields(fields, ranges, set);
+  const CommonValues common = set_fields(fields, ranges, set);
 
   // Kernels in leaf order, padded to whole leaves.
   KernelOrder built;
@@ -269,10 +304,11 @@ KernelSet build_kernel_set(const ParticleSet& particles, const std::vector<Field
         gather(particles, fields, built.begins, static_cast<float>(set.length_scale));
     built.kernels = spatial_order(spheres);
     allocate_kernels(n, set);
+    allocate_values(n, common, set);
     place_kernels(spheres, built, fields, set);
   }
   set.bvh = build_bvh(kernels_of(set.x, n), kernels_of(set.y, n), kernels_of(set.z, n),
-                      kernels_of(set.radius, n));
+                      set.radius.first(n));
   if (order != nullptr) {
     built.leaf_area = leaf_area(set.bvh);
     *order = std::move(built);
@@ -285,11 +321,11 @@ bool refit_kernel_set(const ParticleSet& particles, const std::vector<FieldSourc
   const std::size_t n = set.size();
   if (n == 0 || order.kernels.size() != n || begins_of(fields) != order.begins) return false;
   const std::vector<RadiusRange> ranges = radius_ranges(fields);
-  set_fields(fields, ranges, set);
+  allocate_values(n, set_fields(fields, ranges, set), set);
   place_kernels(gather(particles, fields, order.begins, static_cast<float>(set.length_scale)),
                 order, fields, set);
   refit_bvh(set.bvh, kernels_of(set.x, n), kernels_of(set.y, n), kernels_of(set.z, n),
-            kernels_of(set.radius, n));
+            set.radius.first(n));
   const Bounds3f box = bounds_of(set.bvh);  // internal lengths
   const double unit = 1 / set.length_scale;
   set_centers(particles,

@@ -9,6 +9,7 @@
 
 #include "bvh/bvh.h"
 #include "core/aligned.h"
+#include "field/per_kernel.h"
 #include "particles/particle_set.h"
 #include "scene/scene.h"
 
@@ -31,7 +32,7 @@ struct FieldKernels {
 
 /// Positions, radii and weights of all fields' kernels in leaf order of their one tree. A particle
 /// that several fields take is there once a field. Arrays are padded to whole leaves with kernels
-/// so far away that nothing meets them.
+/// so far away that nothing meets them, whatever their radii.
 ///
 /// Lengths are internal: file's length times length_scale, a power of two that brings the extent of
 /// the data near 1, so that no square overflows and no digit is lost. Values are internal too
@@ -39,7 +40,8 @@ struct FieldKernels {
 struct KernelSet {
   Point3d origin;  ///< of positions; file's lengths, world axes
   double length_scale = 1;
-  UninitializedVector<float> x, y, z, radius, weight;
+  UninitializedVector<float> x, y, z;
+  PerKernel radius, weight;
   UninitializedVector<std::uint8_t>
       field;  ///< index of each kernel's field; empty if there is only one field
   std::vector<FieldKernels> fields;

@@ -199,8 +199,7 @@ HWY_INLINE void load_leaf(const KernelSet& kernels, std::size_t leaf, const Slab
   for (std::size_t i = 0; i < Bvh::leaf_size; i += hn::Lanes(d)) {
     const std::size_t at = leaf * Bvh::leaf_size + i;
     const auto centers = place_centers(d, kernels, at, frame);
-    const auto support =
-        hn::Mul(hn::Load(d, kernels.radius.data() + at), hn::Set(d, support_factor));
+    const auto support = hn::Mul(hn::Load(d, kernels.radius.from(at)), hn::Set(d, support_factor));
     const auto reach = find_reach(d, frame, frustum, centers, support);
     hn::Store(centers.x, d, out.x + i);
     hn::Store(centers.y, d, out.y + i);

@@ -10,18 +10,17 @@
 
 namespace motes {
 
-/// Parts of the work on a tile. The paper's way does all of pass 1 as `sums`.
+/// Parts of the work on a tile. For the paper's way all of pass 1 is `sums`.
 enum class Stage {
   setup,      ///< rays before their first sample, pixels after their last
   traverse,   ///< kernels that reach an area of tiles
-  cull,       ///< those of them that reach a tile
-  factors,    ///< exponentials
-  sums,       ///< kernels added to samples
+  cull,       ///< what those of them reach of the area
+  sums,       ///< kernels' values, added to samples
   integrate,  ///< pass 2
 };
-inline constexpr std::size_t num_stages = 6;
-inline constexpr const char* stage_names[num_stages] = {"setup",   "traverse", "cull",
-                                                        "factors", "sums",     "integrate"};
+inline constexpr std::size_t num_stages = 5;
+inline constexpr const char* stage_names[num_stages] = {"setup", "traverse", "cull", "sums",
+                                                        "integrate"};
 
 /// Ticks of the processor's time stamp, one number a stage.
 struct StageTicks {

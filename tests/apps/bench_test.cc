@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
@@ -179,6 +180,59 @@ TEST_F(Bench, LimitMeasuresTheInstructionSetThatIsForced) {
   EXPECT_EQ(result("limit")["summary"]["peak"]["lanes"], 4);
 }
 
+TEST_F(Bench, BuildTimesTheTreeAndCountsItsMemory) {
+  const Outcome outcome = measure("build nanosphere_90k");
+  EXPECT_EQ(outcome.err, "");
+  const auto row = result("build")["rows"][0];
+  const auto& motes = row["motes"];
+  EXPECT_EQ(row["particles"], 92000);
+  for (const char* key : {"build_s", "tree_alone_s", "refit_s"}) {
+    EXPECT_GT(motes[key].get<double>(), 0) << key;
+    EXPECT_LT(motes[key].get<double>(), 60) << key;
+  }
+  // 5750 leaves; nodes of 224 bytes, level by level.
+  EXPECT_EQ(motes["tree_bytes"], (719 + 90 + 12 + 2 + 1) * 224);
+  // Positions besides: all have one radius and one weight.
+  EXPECT_NEAR(motes["bytes_per_particle"].get<double>(),
+              12 + motes["tree_bytes_per_particle"].get<double>(), 0.01);
+  // About 32; the system counts pages of small processes in large steps.
+  EXPECT_GT(motes["peak_bytes_per_particle"].get<double>(), 20);
+  for (const char* chart : {"out/bench/build.svg", "out/bench/build_memory.svg"}) {
+    EXPECT_THAT(workspace_.read(chart), StartsWith("<svg "));
+    EXPECT_THAT(workspace_.read(chart), Not(HasSubstr("\"nan")));
+    EXPECT_THAT(workspace_.read(chart), HasSubstr("nanosphere_90k, Motes: "));
+  }
+}
+
+TEST_F(Bench, BuildComparesWithEmbreeWhereItIs) {
+  const Outcome outcome = measure("build nanosphere_90k");
+  const auto row = result("build")["rows"][0];
+  if (MOTES_EMBREE == 0) {
+    EXPECT_THAT(outcome.out, HasSubstr("without Embree (script/bootstrap bench installs it"));
+    EXPECT_TRUE(row["embree_morton"].is_null() && row["embree_default"].is_null());
+    return;
+  }
+  EXPECT_THAT(outcome.out, HasSubstr("Embree 3."));
+  const double particles = row["particles"];
+  for (const char* key : {"embree_morton", "embree_default"}) {
+    const auto& embree = row[key];
+    const double nodes = embree["nodes"], leaves = embree["leaves"];
+    // Up to sixteen particles a leaf and eight children a node; every node but the root is a child.
+    EXPECT_GE(leaves * 16, particles) << key;
+    EXPECT_LT(leaves * 4, particles) << key;
+    EXPECT_LE(nodes + leaves - 1, 8 * nodes) << key;
+    EXPECT_EQ(embree["tree_bytes"], nodes * 256 + (leaves + particles) * 4) << key;
+    // The boxes alone are 32, less what the system has not counted yet.
+    EXPECT_GT(embree["peak_bytes_per_particle"].get<double>(), 20) << key;
+  }
+  // Two ways of building are two trees, and the faster way counts.
+  EXPECT_NE(row["embree_morton"]["nodes"], row["embree_default"]["nodes"]);
+  EXPECT_NEAR(row["embree_morton_over_motes"].get<double>() * row["motes"]["build_s"].get<double>(),
+              std::min(row["embree_morton"]["build_s"].get<double>(),
+                       row["embree_morton"]["again_s"].get<double>()),
+              1e-9);
+}
+
 TEST_F(Bench, Fig6CutsOutOnePartAfterTheOther) {
   EXPECT_EQ(bench("scenes tryptophan").status, 0);
   const Outcome outcome = measure("fig6 tryptophan");
@@ -221,7 +275,7 @@ TEST_F(Bench, Fig8AndFig9MakePictures) {
 }
 
 TEST_F(Bench, ASceneTooLargeForTheMemoryIsRefusedFirst) {
-  for (const std::string what : {"scenes", "table1", "table2", "fields"}) {
+  for (const std::string what : {"scenes", "table1", "table2", "fields", "build"}) {
     EXPECT_THAT(failure("bench " + what + " tryptophan cosmology --memory 2" + data, 1),
                 StartsWith("motes: error: cosmology: 82051072 particles need "));
   }

@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "image/compare.h"
+#include "render/engine_ways.h"
 #include "support/particles_at.h"
 
 namespace motes {
@@ -162,6 +163,64 @@ TEST(Renderer, RebuildsItsTreeWhereARefitIsNotWorthIt) {
   expect_rebuilt(particles);
   expect_rebuilt(particles_at(std::vector<Point3d>(particles.size())));  // all in one place
   expect_rebuilt(particles);
+}
+
+TEST(Renderer, PicturesAreTheSameWhetherKernelsShareAValueOrStoreIt) {
+  // A kernel that nobody sees may have another, lesser radius and weight: then all are stored.
+  std::vector<Point3d> points;
+  const ParticleSet cloud = random_particles(2000, 4);
+  for (std::size_t i = 0; i < cloud.size(); ++i) points.push_back(cloud.position(i));
+  points.push_back({0, 0, 40});  // behind the camera
+  const ParticleSet particles = particles_at(points);
+  const auto field = [&](float radius, float weight) {
+    FieldSource source = field_of_all(particles, 0.5f, 0.75f, {2, 1});
+    source.radius.assign(particles.size(), 0.5f);
+    source.weight.assign(particles.size(), 0.75f);
+    source.radius.back() = radius;
+    source.weight.back() = weight;
+    return source;
+  };
+  const Renderer shared(particles, {field(0.5f, 0.75f)}), stored(particles, {field(0.49f, 0.7f)});
+  ASSERT_LT(shared.kernels().particle_bytes() + 7 * particles.size(),
+            stored.kernels().particle_bytes());
+  ResolvedScene scene = scene_along_z(0.1, ramp);
+  for (const bool lit : {false, true}) {
+    scene.render.lighting.enabled = lit;
+    for (const Way& way : all_ways()) {
+      const Framebuffer image = render_in(way, shared, scene);
+      EXPECT_GT(middle_alpha(image), 0.2);
+      EXPECT_EQ(image, render_in(way, stored, scene)) << way.name() << (lit ? ", lit" : "");
+    }
+  }
+}
+
+TEST(Renderer, RefitsItsTreeToKernelsThatShareAValueOrDoNot) {
+  ParticleSet particles = random_particles(3000, 4);
+  const auto shared = [&] {
+    return std::vector<FieldSource>{field_of_all(particles, 0.4f, 1, {2, 1})};
+  };
+  const auto stored = [&](unsigned seed) {
+    std::vector<FieldSource> fields = shared();
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<float> factor(0.7f, 1.3f);
+    fields[0].radius.clear();
+    fields[0].weight.clear();
+    for (std::size_t i = 0; i < particles.size(); ++i) {
+      fields[0].radius.push_back(0.4f * factor(random));
+      fields[0].weight.push_back(factor(random));
+    }
+    return fields;
+  };
+  Renderer renderer(particles, shared());
+  renderer.set_particles(particles, shared());
+  const std::size_t least = renderer.kernels().particle_bytes();
+  for (unsigned frame = 1; frame < 5; ++frame) {
+    particles = moved(particles, 0.05, frame);
+    const std::vector<FieldSource> fields = frame % 2 == 1 ? stored(frame) : shared();
+    EXPECT_EQ(renderer.set_particles(particles, fields), TreeUpdate::refitted);
+    EXPECT_EQ(renderer.kernels().particle_bytes() == least, frame % 2 == 0);
+    expect_fresh_pictures(renderer, particles, fields);
+  }
 }
 
 TEST(Renderer, OnePassGivesThePictureOfManyPasses) {

@@ -12,7 +12,7 @@ namespace motes {
 /// What the options of the command line say.
 struct BenchOptions {
   int width = 1024, height = 1024;
-  int repeat = 5;   ///< frames of which the median is taken
+  int repeat = 5;   ///< frames, or builds, of which the median is taken
   int threads = 0;  ///< 0: all
 };
 
@@ -25,6 +25,7 @@ struct BenchJob {
 
 void run_scenes(const BenchJob& job);
 void run_table1(const BenchJob& job);
+void run_build(const BenchJob& job);
 void run_table2(const BenchJob& job);
 void run_fields(const BenchJob& job);
 void run_limit(const BenchJob& job);

@@ -2,6 +2,7 @@
 #include "motes/bench/report.h"
 
 #include <fmt/format.h>
+#include <malloc.h>
 #include <sys/utsname.h>
 #include <tbb/info.h>
 #include <unistd.h>
@@ -34,6 +35,11 @@ std::string value_in(const char* path, std::string_view key) {
 }
 
 std::string processor() { return value_in("/proc/cpuinfo", "model name"); }
+
+/// One of the sizes of this process in /proc.
+std::size_t own_bytes(std::string_view key) {
+  return std::strtoull(value_in("/proc/self/status", key).c_str(), nullptr, 10) * 1024;
+}
 
 int threads_of(const BenchOptions& options) {
   return options.threads > 0 ? options.threads : tbb::info::default_concurrency();
@@ -86,11 +92,13 @@ void write_result_file(const BenchJob& job, std::string_view name, std::string_v
   fmt::print("written: {}\n", path.string());
 }
 
-std::size_t peak_memory() {
-  const std::string value = value_in("/proc/self/status", "VmHWM");
-  return std::strtoull(value.c_str(), nullptr, 10) * 1024;
-}
+std::size_t resident_memory() { return own_bytes("VmRSS"); }
 
-void reset_peak_memory() { std::ofstream("/proc/self/clear_refs") << "5"; }
+std::size_t peak_memory() { return own_bytes("VmHWM"); }
+
+void reset_peak_memory() {
+  malloc_trim(0);
+  std::ofstream("/proc/self/clear_refs") << "5";
+}
 
 }  // namespace motes

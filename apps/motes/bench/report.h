@@ -24,9 +24,11 @@ void write_results(const BenchJob& job, std::string_view name, const nlohmann::o
 /// Writes `text` to the result file `name` and says so on the standard output.
 void write_result_file(const BenchJob& job, std::string_view name, std::string_view text);
 
-/// Most memory that the process had since reset_peak_memory(), bytes; 0 where the system does not
-/// tell.
+/// Memory that the process has, and most that it had since reset_peak_memory(), bytes; 0 where the
+/// system does not tell.
+std::size_t resident_memory();
 std::size_t peak_memory();
+/// Gives the system back what is free first, so that it counts when it is used again.
 void reset_peak_memory();
 
 }  // namespace motes

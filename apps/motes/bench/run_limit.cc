@@ -80,8 +80,7 @@ void print(const MachinePeak& peak) {
 }
 
 /// Stages as the table's head has room for them.
-constexpr const char* short_names[num_stages] = {"setup",   "trav.", "cull",
-                                                 "factors", "sums",  "integr."};
+constexpr const char* short_names[num_stages] = {"setup", "trav.", "cull", "sums", "integr."};
 
 void print_header() {
   fmt::print("{:<22}{:>8}  |{:>49}  |{:>15}  |{:>29}  |{:>14}  |{:>6}\n", "", "frame",
