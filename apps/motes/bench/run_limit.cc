@@ -83,7 +83,7 @@ void print(const MachinePeak& peak) {
 constexpr const char* short_names[num_stages] = {"setup", "trav.", "cull", "sums", "integr."};
 
 void print_header() {
-  fmt::print("{:<22}{:>8}  |{:>49}  |{:>15}  |{:>29}  |{:>14}  |{:>6}\n", "", "frame",
+  fmt::print("{:<22}{:>8}  |{:>41}  |{:>15}  |{:>29}  |{:>14}  |{:>6}\n", "", "frame",
              "% of the time of all threads", "evaluations, M", "% of the peak: frame     sums",
              "ticks for one", "data");
   fmt::print("{:<16}{:<6}{:>8}  | ", "scene", "view", "ms");
