@@ -142,11 +142,11 @@ HWY_INLINE Lanes spread_rows(LaneTag d, const float* rows, int v) {
   }
 }
 
-/// sum + v where `inside`; AVX-512 does that in one operation.
+/// sum + v where `inside`. Not sum itself elsewhere: compilers make a masked store of that, which
+/// processors do not forward to the next load.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V add_inside(D, hn::Mask<D> inside, V v, V sum) {
-  return HWY_TARGET <= HWY_AVX3 ? hn::IfThenElse(inside, hn::Add(sum, v), sum)
-                                : hn::Add(sum, hn::IfThenElseZero(inside, v));
+  return hn::Add(sum, hn::IfThenElseZero(inside, v));
 }
 
 /// What the groups of a row have in common: vectors, one a block.
@@ -274,22 +274,42 @@ HWY_NOINLINE void add_narrow_kernels(LaneTag d, const GatheredKernels& gathered,
   }
 }
 
-/// Columns of the box's groups that a kernel may reach in its row `row` of groups, a bit each.
-inline GroupBits reached_columns(const SweptKernel& kernel, float support_sq, const GroupBox& box,
-                                 int row) {
-  constexpr float size = AreaBuffer::group_size, middle = 0.5f * (size - 1);
-  // The group's row of samples that is nearest to the centre, or between its rows.
-  const float y = kernel.y + (size * static_cast<float>(row) + middle) * kernel.dy;
-  const float nearest = std::max(std::abs(y) - middle * std::abs(kernel.dy), 0.0f);
-  const float half_sq = support_sq - kernel.dz * kernel.dz - nearest * nearest;
-  const float per_column = 1 / kernel.dx, slack = 1e-3f;
-  const float half = std::sqrt(std::max(half_sq, 0.0f)) * per_column + slack;
-  const float center = -kernel.x * per_column;
-  const float last_column = static_cast<float>(box.columns()) * size - 1;
-  const auto first = static_cast<unsigned>(std::clamp(std::ceil(center - half), 0.0f, last_column));
-  const auto last = static_cast<unsigned>(std::clamp(std::floor(center + half), 0.0f, last_column));
-  return (2u << last / AreaBuffer::group_size) - (1u << first / AreaBuffer::group_size);
-}
+/// Columns of the box's groups that a kernel may reach in each row of groups, a bit each.
+struct ReachedColumns {
+  alignas(64) GroupBits of_row[AreaBuffer::groups];
+
+  HWY_INLINE void find(LaneTag d, const SweptKernel& kernel, float support_sq,
+                       const GroupBox& box) {
+    const hn::RebindToSigned<LaneTag> di;
+    const hn::RebindToUnsigned<LaneTag> du;
+    constexpr float size = AreaBuffer::group_size, middle = 0.5f * (size - 1);
+    const Lanes disc_sq = hn::Set(d, support_sq - kernel.dz * kernel.dz);
+    const Lanes per_column = hn::Set(d, 1 / kernel.dx);
+    const Lanes center = hn::Set(d, -kernel.x / kernel.dx);
+    const Lanes end = hn::Set(d, static_cast<float>(box.columns()) * size - 1);
+    // Rounding of the square root and of places, in pixels.
+    const Lanes slack = hn::Set(d, 1e-3f), stretch = hn::Mul(per_column, hn::Set(d, 1.0005f));
+    for (int row = 0; row < box.rows(); row += num_lanes) {
+      // The group's row of samples that is nearest to the centre, or between its rows.
+      const Lanes number = hn::Iota(d, static_cast<float>(row));
+      const Lanes y = hn::MulAdd(number, hn::Set(d, size * kernel.dy),
+                                 hn::Set(d, kernel.y + middle * kernel.dy));
+      const Lanes nearest =
+          hn::Max(hn::Sub(hn::Abs(y), hn::Set(d, middle * std::abs(kernel.dy))), hn::Zero(d));
+      const Lanes half_sq = hn::Max(hn::NegMulAdd(nearest, nearest, disc_sq), hn::Set(d, 1e-30f));
+      const Lanes half =
+          hn::MulAdd(hn::Mul(half_sq, hn::ApproximateReciprocalSqrt(half_sq)), stretch, slack);
+      const auto group_at = [&](Lanes pixel) HWY_ATTR {
+        const Lanes inside = hn::Min(hn::Max(pixel, hn::Zero(d)), end);
+        return hn::BitCast(du, hn::ConvertTo(di, hn::Mul(inside, hn::Set(d, 1 / size))));
+      };
+      const auto first = group_at(hn::Ceil(hn::Sub(center, half)));
+      const auto last = group_at(hn::Floor(hn::Add(center, half)));
+      hn::Store(hn::Sub(hn::Shl(hn::Set(du, 2), last), hn::Shl(hn::Set(du, 1), first)), du,
+                of_row + row);
+    }
+  }
+};
 
 /// Adds kernels with boxes of any size to those live groups that they reach.
 template <class C>
@@ -305,9 +325,11 @@ HWY_NOINLINE void add_wide_kernels(LaneTag d, const GatheredKernels& gathered,
     const SweptKernel kernel = place_kernel(gathered, k, plane, box);
     BoxFactors<AreaBuffer::groups, AreaBuffer::groups, C> factors;
     factors.fill(d, kernel, box.columns(), box.rows());
+    ReachedColumns reached;
+    reached.find(d, kernel, gathered.support_sq[k], box);
     for (int row = 0; row < box.rows(); ++row) {
-      GroupBits left = reached_columns(kernel, gathered.support_sq[k], box, row) &
-                       samples.live[static_cast<std::size_t>(box.row + row)] >> box.column;
+      GroupBits left =
+          reached.of_row[row] & samples.live[static_cast<std::size_t>(box.row + row)] >> box.column;
       counts.carried_out +=
           static_cast<std::uint64_t>(std::popcount(left)) * AreaBuffer::group_pixels;
       const auto rows = spread_group(d, factors, gathered.cut[k], row);

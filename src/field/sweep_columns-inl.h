@@ -161,7 +161,7 @@ HWY_NOINLINE std::size_t find_thin_kernels(const AreaPlanes& planes, GatheredKer
     const Lanes one = hn::Set(d, 1.0f), most = hn::Set(d, static_cast<float>(max_thin_pixels - 1));
     const LaneMask fits = hn::Le(hn::Max(width, height), most);
     const LaneMask pays = hn::Le(hn::Mul(hn::Add(width, one), hn::Add(height, one)),
-                                 hn::Mul(num_planes, hn::Set(d, 8.0f)));
+                                 hn::Mul(num_planes, hn::Set(d, 16.0f)));
     const LaneMask thin = hn::And(reaches, hn::And(fits, pays));
     const LaneMask other = hn::AndNot(thin, reaches);
     hn::Store(hn::IfThenElse(other, support_sq, hn::Set(d, -1.0f)), d,
