@@ -249,6 +249,7 @@ HWY_NOINLINE void add_narrow_kernels(LaneTag d, const GatheredKernels& gathered,
   const std::size_t row_floats = samples.buffer.row_floats();
   const std::size_t group_floats = samples.buffer.group_floats();
   const std::size_t block_floats = samples.buffer.block_floats();
+  const std::size_t num_fields = samples.buffer.num_fields();
   const AreaBuffer::PlaneBits bit = samples.bit();
   for (std::size_t i = 0; i < list.size; ++i) {
     const GroupBox box = list.box_of(i);
@@ -256,18 +257,19 @@ HWY_NOINLINE void add_narrow_kernels(LaneTag d, const GatheredKernels& gathered,
     const std::size_t k = list.kernel[i];
     BoxFactors<kColumns, AreaBuffer::groups, C> factors;
     factors.fill(d, place_kernel(gathered, k, plane, box), kColumns, box.rows());
-    float* group = samples.at(box.row, box.column, gathered.field[k]);
-    AreaBuffer::PlaneBits* touched = &samples.buffer.touched(box.row, box.column);
+    const std::uint32_t field = gathered.field[k];
+    AreaBuffer::PlaneBits* touched = samples.buffer.touched(box.row, box.column) + field;
+    float* group = samples.at(box.row, box.column, field);
     for (int row = 0; row < box.rows(); ++row) {
       const auto rows = spread_group(d, factors, gathered.cut[k], row);
       for (int column = 0; column < kColumns; ++column) {
-        touched[column] |= bit;
+        touched[static_cast<std::size_t>(column) * num_fields] |= bit;
         counts.inside_support +=
             add_to_group(d, factors, rows, column,
                          group + static_cast<std::size_t>(column) * group_floats, block_floats);
       }
       group += row_floats;
-      touched += AreaBuffer::padded;
+      touched += AreaBuffer::padded * num_fields;
     }
     counts.carried_out +=
         static_cast<std::uint64_t>(kColumns * box.rows() * AreaBuffer::group_pixels);
@@ -317,6 +319,7 @@ HWY_NOINLINE void add_wide_kernels(LaneTag d, const GatheredKernels& gathered,
                                    const BoxedKernels& list, const AreaPlane& plane,
                                    const PlaneSamples& samples, EvaluationCounts& counts) {
   const std::size_t group_floats = samples.buffer.group_floats();
+  const std::size_t num_fields = samples.buffer.num_fields();
   const AreaBuffer::PlaneBits bit = samples.bit();
   for (std::size_t i = 0; i < list.size; ++i) {
     const GroupBox box = list.box_of(i);
@@ -334,10 +337,11 @@ HWY_NOINLINE void add_wide_kernels(LaneTag d, const GatheredKernels& gathered,
           static_cast<std::uint64_t>(std::popcount(left)) * AreaBuffer::group_pixels;
       const auto rows = spread_group(d, factors, gathered.cut[k], row);
       float* const group = samples.at(box.row + row, box.column, gathered.field[k]);
-      AreaBuffer::PlaneBits* const touched = &samples.buffer.touched(box.row + row, box.column);
+      AreaBuffer::PlaneBits* const touched =
+          samples.buffer.touched(box.row + row, box.column) + gathered.field[k];
       for (; left != 0; left &= left - 1) {
         const int column = std::countr_zero(left);
-        touched[column] |= bit;
+        touched[static_cast<std::size_t>(column) * num_fields] |= bit;
         counts.inside_support += add_to_group(
             d, factors, rows, column, group + static_cast<std::size_t>(column) * group_floats,
             samples.buffer.block_floats());

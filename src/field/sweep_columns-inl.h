@@ -359,7 +359,10 @@ HWY_NOINLINE void move_group(ColumnBuffer& columns, int row, int column, int num
       }
     }
   }
-  area.touched(row, column) |= (AreaBuffer::PlaneBits{1} << num_planes) - 1;
+  AreaBuffer::PlaneBits* const touched = area.touched(row, column);
+  for (std::size_t f = 0; f < area.num_fields(); ++f) {
+    touched[f] |= (AreaBuffer::PlaneBits{1} << num_planes) - 1;
+  }
 }
 
 }  // namespace HWY_NAMESPACE

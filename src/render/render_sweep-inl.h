@@ -48,7 +48,7 @@ constexpr std::size_t first_block(int row, int column) {
 }
 
 /// Bytes of samples that are worked on together: they stay in the second-level cache.
-inline constexpr std::size_t batch_bytes = 1400 << 10;
+inline constexpr std::size_t batch_bytes = 4096 << 10;
 
 /// Planes that are sampled before they are integrated.
 inline int planes_at_once(const FrameContext& context, const SampleLayout& layout) {
@@ -211,39 +211,38 @@ class AreaSweep {
 
   /// Pass 2 for the planes of the buffer, which is zero again afterwards.
   void integrate_area(const Slab& batch) {
-    const auto all = static_cast<AreaBuffer::PlaneBits>((std::uint64_t{1} << batch.count) - 1);
     for (int row = 0; row < AreaBuffer::padded; ++row) {
       for (int column = 0; column < AreaBuffer::padded; ++column) {
-        AreaBuffer::PlaneBits& touched = memory_.buffer.touched(row, column);
         const bool live = (live_[static_cast<std::size_t>(row)] >> column & 1) != 0;
-        const AreaBuffer::PlaneBits planes = zero_is_transparent_ ? touched : all;
-        if (live && planes != 0 && find_visible(row, column, planes)) {
-          integrate_group(row, column, batch);
-        }
-        clear(row, column, touched);
-        touched = 0;
+        if (live && find_visible(row, column, batch.count)) integrate_group(row, column, batch);
+        clear(row, column);
       }
     }
     clock_.lap(Stage::integrate);
   }
 
   /// Sets memory_.visible for a group; true if anything may be seen.
-  bool find_visible(int row, int column, AreaBuffer::PlaneBits planes) {
+  bool find_visible(int row, int column, int num_planes) {
     const LaneTag d;
     const std::size_t num_fields = context_.classifiers.size();
     const std::size_t stride = memory_.buffer.plane_floats();
-    const float* samples = memory_.buffer.at(row, column);
+    const auto all = static_cast<AreaBuffer::PlaneBits>((std::uint64_t{1} << num_planes) - 1);
+    const AreaBuffer::PlaneBits* const touched = memory_.buffer.touched(row, column);
     std::uint64_t any = 0;
-    for (std::size_t i = 0; i < group_blocks * num_fields; ++i, samples += field_floats_) {
-      const Visibility visibility = context_.classifiers[i % num_fields].visibility;
-      std::uint64_t visible = 0;
-      for (AreaBuffer::PlaneBits left = planes; left != 0; left &= left - 1) {
-        const auto k = static_cast<std::size_t>(std::countr_zero(left));
-        const bool seen = may_be_seen(d, hn::Load(d, samples + k * stride), visibility);
-        visible |= std::uint64_t{seen} << k;
+    for (std::size_t f = 0; f < num_fields; ++f) {
+      const Visibility visibility = context_.classifiers[f].visibility;
+      const AreaBuffer::PlaneBits planes = visibility.shows_zero() ? all : touched[f];
+      const float* samples = memory_.buffer.at(row, column) + f * field_floats_;
+      for (std::size_t v = 0; v < group_blocks; ++v, samples += memory_.buffer.block_floats()) {
+        std::uint64_t visible = 0;
+        for (AreaBuffer::PlaneBits left = planes; left != 0; left &= left - 1) {
+          const auto k = static_cast<std::size_t>(std::countr_zero(left));
+          const bool seen = may_be_seen(d, hn::Load(d, samples + k * stride), visibility);
+          visible |= std::uint64_t{seen} << k;
+        }
+        memory_.visible[v * num_fields + f] = visible;
+        any |= visible;
       }
-      memory_.visible[i] = visible;
-      any |= visible;
     }
     return any != 0;
   }
@@ -265,15 +264,21 @@ class AreaSweep {
     }
   }
 
-  void clear(int row, int column, AreaBuffer::PlaneBits planes) {
+  void clear(int row, int column) {
     const LaneTag d;
-    const std::size_t stride = memory_.buffer.plane_floats();
-    float* const samples = memory_.buffer.at(row, column);
-    for (; planes != 0; planes &= planes - 1) {
-      float* const at = samples + static_cast<std::size_t>(std::countr_zero(planes)) * stride;
-      for (std::size_t i = 0; i < stride; i += num_lanes) {
-        hn::Store(hn::Zero(d), d, at + i);
-        __asm__ volatile("");  // or it becomes a call of memset(), which takes longer
+    AreaBuffer& buffer = memory_.buffer;
+    const std::size_t stride = buffer.plane_floats(), block_floats = buffer.block_floats();
+    AreaBuffer::PlaneBits* const touched = buffer.touched(row, column);
+    for (std::size_t f = 0; f < buffer.num_fields(); ++f) {
+      float* const samples = buffer.at(row, column) + f * field_floats_;
+      for (; touched[f] != 0; touched[f] &= touched[f] - 1) {
+        float* block = samples + static_cast<std::size_t>(std::countr_zero(touched[f])) * stride;
+        for (int v = 0; v < group_blocks; ++v, block += block_floats) {
+          for (std::size_t i = 0; i < field_floats_; i += num_lanes) {
+            hn::Store(hn::Zero(d), d, block + i);
+            __asm__ volatile("");  // or it becomes a call of memset(), which takes longer
+          }
+        }
       }
     }
   }

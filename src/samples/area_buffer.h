@@ -2,9 +2,9 @@
 // Layout only.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "core/aligned.h"
 #include "samples/samples.h"
@@ -39,8 +39,9 @@ class AreaBuffer {
     plane_floats_ = block_floats * static_cast<std::size_t>(group_pixels / lanes_);
     // A plane of room to spare: groups whose distance is a power of two would share cache sets.
     group_floats_ = plane_floats_ * static_cast<std::size_t>(num_planes + 1);
+    num_fields_ = static_cast<std::size_t>(layout.num_fields);
     values_.assign(static_cast<std::size_t>(padded) * row_floats(), 0.0f);
-    touched_.fill(0);
+    touched_.assign(static_cast<std::size_t>(padded * padded) * num_fields_, 0);
   }
 
   std::size_t block_floats() const { return block_floats_; }
@@ -53,16 +54,19 @@ class AreaBuffer {
     return values_.data() + static_cast<std::size_t>(row) * row_floats() +
            static_cast<std::size_t>(column) * group_floats_;
   }
-  /// Planes on which a group may hold anything but zero; rows are `padded` elements long.
-  PlaneBits& touched(int row, int column) {
-    return touched_[static_cast<std::size_t>(row * padded + column)];
+  /// Planes on which a group may hold anything but zero, an element a field; those of the next
+  /// group of the row follow.
+  PlaneBits* touched(int row, int column) {
+    return touched_.data() + static_cast<std::size_t>(row * padded + column) * num_fields_;
   }
+  std::size_t num_fields() const { return num_fields_; }
 
  private:
   int lanes_ = 0, num_planes_ = 0;
+  std::size_t num_fields_ = 0;
   std::size_t block_floats_ = 0, plane_floats_ = 0, group_floats_ = 0;
   AlignedVector<float> values_;
-  std::array<PlaneBits, static_cast<std::size_t>(padded* padded)> touched_{};
+  std::vector<PlaneBits> touched_;
 };
 
 /// Groups of a row of an area, a bit each.
