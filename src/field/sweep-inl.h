@@ -313,7 +313,8 @@ struct ReachedColumns {
   }
 };
 
-/// Adds kernels with boxes of any size to those live groups that they reach.
+/// Adds kernels with boxes of any size to the groups that they reach, but where no ray is under
+/// way.
 template <class C>
 HWY_NOINLINE void add_wide_kernels(LaneTag d, const GatheredKernels& gathered,
                                    const BoxedKernels& list, const AreaPlane& plane,
@@ -330,21 +331,25 @@ HWY_NOINLINE void add_wide_kernels(LaneTag d, const GatheredKernels& gathered,
     factors.fill(d, kernel, box.columns(), box.rows());
     ReachedColumns reached;
     reached.find(d, kernel, gathered.support_sq[k], box);
+    const std::uint32_t field = gathered.field[k];
     for (int row = 0; row < box.rows(); ++row) {
-      GroupBits left =
+      const GroupBits reached_live =
           reached.of_row[row] & samples.live[static_cast<std::size_t>(box.row + row)] >> box.column;
-      counts.carried_out +=
-          static_cast<std::uint64_t>(std::popcount(left)) * AreaBuffer::group_pixels;
+      if (reached_live == 0) continue;
+      // All between the first and the last, which is simpler to count than those that are live.
+      const int first = std::countr_zero(reached_live);
+      const int count = std::bit_width(reached_live) - first;
+      counts.carried_out += static_cast<std::uint64_t>(count * AreaBuffer::group_pixels);
       const auto rows = spread_group(d, factors, gathered.cut[k], row);
-      float* const group = samples.at(box.row + row, box.column, gathered.field[k]);
-      AreaBuffer::PlaneBits* const touched =
-          samples.buffer.touched(box.row + row, box.column) + gathered.field[k];
-      for (; left != 0; left &= left - 1) {
-        const int column = std::countr_zero(left);
-        touched[static_cast<std::size_t>(column) * num_fields] |= bit;
-        counts.inside_support += add_to_group(
-            d, factors, rows, column, group + static_cast<std::size_t>(column) * group_floats,
-            samples.buffer.block_floats());
+      float* group = samples.at(box.row + row, box.column + first, field);
+      AreaBuffer::PlaneBits* touched =
+          samples.buffer.touched(box.row + row, box.column + first) + field;
+      for (int column = first; column < first + count; ++column) {
+        *touched |= bit;
+        counts.inside_support +=
+            add_to_group(d, factors, rows, column, group, samples.buffer.block_floats());
+        touched += num_fields;
+        group += group_floats;
       }
     }
   }
