@@ -235,6 +235,38 @@ TEST_F(Bench, BuildComparesWithEmbreeWhereItIs) {
               1e-9);
 }
 
+TEST_F(Bench, RadiiComparesWithEqualOnesThatGiveAsManyEvaluations) {
+  const Outcome outcome = measure("radii");
+  EXPECT_EQ(outcome.err, "");
+  const auto rows = result("radii")["rows"];
+  ASSERT_EQ(rows.size(), 6U);
+  for (const auto& row : rows) {
+    EXPECT_EQ(row["particles"], 1000);
+    EXPECT_LT(row["least_radius"], row["most_radius"]);
+    for (const char* engine : {"sweep", "coherent"}) {
+      const auto& pair = row[engine];
+      const double adaptive = pair["adaptive_evaluations"], equal = pair["equal_evaluations"];
+      // Within 3 % for the engine that is counted.
+      EXPECT_NEAR(equal / adaptive, 1, std::string(engine) == "sweep" ? 0.03 : 1) << row;
+      EXPECT_NEAR(pair["adaptive_over_equal"].get<double>(),
+                  pair["adaptive"]["frame_ms"].get<double>() / adaptive /
+                      (pair["equal"]["frame_ms"].get<double>() / equal),
+                  1e-9);
+    }
+  }
+  // As wide as they are said to be.
+  const auto orders = [&](std::size_t row) {
+    return std::log10(rows[row]["most_radius"].get<double>() /
+                      rows[row]["least_radius"].get<double>());
+  };
+  EXPECT_GT(orders(0), 3.5);
+  EXPECT_NEAR(orders(2), 4, 0.1);
+  EXPECT_NEAR(orders(3), 8, 0.1);
+  EXPECT_THAT(workspace_.read("out/bench/radii.svg"), Not(HasSubstr("nan")));
+  EXPECT_THAT(failure(std::string("bench radii zeolite") + data, 1),
+              HasSubstr("radii takes no scene; one is named"));
+}
+
 TEST_F(Bench, Fig6CutsOutOnePartAfterTheOther) {
   EXPECT_EQ(bench("scenes tryptophan").status, 0);
   const Outcome outcome = measure("fig6 tryptophan");

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -313,6 +314,56 @@ TEST(Engines, LatticeFarAndClose) {
       // rays end after some ten samples, or after fifty.
       EXPECT_LT(comparison.unstable_share(), extinction > 1 ? 0.04 : 0.2);
     }
+  }
+}
+
+/// Radii from 0.5 down over so many orders of magnitude, evenly spread, around the origin. Kernels
+/// far thinner than a pixel lie on samples of the camera's, or none would be seen; not those so
+/// thin that floats do not place them to a thousandth of their radius.
+PlainScene radii_over(int orders) {
+  PlainScene s = plain_scene({}, 6);
+  s.scene.step_size = 0.11;
+  const double half_height = std::tan(s.scene.camera.fov_degrees * std::numbers::pi / 360);
+  std::uint32_t state = 5;
+  const auto unit = [&] {
+    state = state * 1664525U + 1013904223U;
+    return static_cast<double>(state >> 8) / (1 << 24);
+  };
+  std::vector<Point3d> centers;
+  std::vector<float> radii;
+  for (int i = 0; i < 300; ++i) {
+    const double radius = 0.5 * std::pow(10, -orders * unit());
+    Point3d center{2 * unit() - 1, 2 * unit() - 1, 2 * unit() - 1};
+    if (radius < 0.02 && radius > 1e-4) {
+      const double column = std::floor(24 * unit()), row = std::floor(20 * unit());
+      const double depth = s.scene.step_size * (std::floor(40 + 25 * unit()) + 0.5);
+      // Not on the very sample: there is no normal.
+      center = Point3d{(2 * (column + 0.5) / 24 - 1) * half_height * 1.2 * depth,
+                       (1 - 2 * (row + 0.5) / 20) * half_height * depth, 6 - depth} +
+               radius * Vector3d{0.4, -0.3, 0.3};
+    }
+    centers.push_back(center);
+    radii.push_back(static_cast<float>(radius));
+  }
+  s.particles = particles_at(centers);
+  s.scene.fields = {field_of_all(s.particles, 1, 1, {})};
+  s.scene.fields[0].radius = radii;
+  s.scene.transfer_functions = {ramp(4, 2)};
+  return s;
+}
+
+TEST(Engines, RadiiOverFourAndEightOrdersOfMagnitude) {
+  for (const int orders : {4, 8}) {
+    PlainScene s = radii_over(orders);
+    check(s, fmt::format("{} orders", orders));
+    s.scene.render.lighting.enabled = true;
+    check(s, fmt::format("{} orders, lit", orders));
+    // Densities: the peaks span three times as many.
+    s.scene.fields[0].normalise = true;
+    s.scene.transfer_functions = {{{{.value = 0.01, .color = {0.1F, 0.2F, 1}, .extinction = 0},
+                                    {.value = 1e12, .color = {1, 0.8F, 0.3F}, .extinction = 3}},
+                                   true}};
+    check(s, fmt::format("{} orders, densities", orders));
   }
 }
 

@@ -30,6 +30,7 @@ constexpr const char* examples =
   build     build times and memory of the tree, beside Embree's
   fields    what more fields cost: particles shared out among them, or all in two
   limit     what part of the machine's peak the sweep reaches, and where the rest goes
+  radii     time of a kernel evaluation where radii differ by orders of magnitude
   fig6      frames per second from a thousand to all particles of the cosmological box
   fig7      frames per second with rays that end early or late, and with passes of many samples
   fig8      pictures for several kernel scales (kappa), and their frames per second
@@ -58,6 +59,7 @@ constexpr Benchmark benchmarks[] = {{"scenes", run_scenes},
                                     {"build", run_build},
                                     {"fields", run_fields, {"zeolite", "tryptophan", "anp3"}},
                                     {"limit", run_limit},
+                                    {"radii", run_radii, {}, 0},
                                     {"fig6", run_fig6, {"cosmology"}, 1},
                                     {"fig7", run_fig7, {"cosmology"}, 1},
                                     {"fig8", run_fig8, {"nanobowl"}},
@@ -97,13 +99,16 @@ const Benchmark& find_benchmark(const std::string& name) {
 std::vector<const BenchScene*> scenes_of(const Benchmark& benchmark,
                                          std::vector<std::string> names) {
   if (names.size() > benchmark.most_scenes) {
-    throw Error(fmt::format("{} takes one scene; {} are named", benchmark.name, names.size()));
+    throw Error(fmt::format("{} takes {}; {} named", benchmark.name,
+                            benchmark.most_scenes == 0 ? "no scene" : "one scene",
+                            names.size() == 1 ? "one is" : fmt::format("{} are", names.size())));
   }
   if (names.empty()) {
     for (const std::string_view name : benchmark.default_scenes) {
       if (!name.empty()) names.emplace_back(name);
     }
   }
+  if (benchmark.most_scenes == 0) return {};
   return find_bench_scenes(names);
 }
 
