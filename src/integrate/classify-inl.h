@@ -272,7 +272,7 @@ struct Normals {
     // Where kernels cancel there is no normal: |gradient| min_radius < 1e-6 sum |phi|.
     const auto absolute_at =
         static_cast<std::size_t>(layout.absolute ? layout.absolute_channel() * num_lanes : 0);
-    const Lanes least = hn::Set(d, 1e-12f / (min_radius * min_radius));
+    const Lanes scale = hn::Set(d, 1e6f * min_radius);
     unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR {
       x[n] = hn::Load(d, channels[n] + num_lanes);
       y[n] = hn::Load(d, channels[n] + 2 * num_lanes);
@@ -280,11 +280,11 @@ struct Normals {
     });
     unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR {
       const Lanes norm_sq = hn::MulAdd(x[n], x[n], hn::MulAdd(y[n], y[n], hn::Mul(z[n], z[n])));
-      const Lanes absolute = hn::Load(d, channels[n] + absolute_at);
+      const Lanes inverse = inverse_sqrt(d, norm_sq), norm = hn::Mul(norm_sq, inverse);
+      const Lanes absolute = hn::Abs(hn::Load(d, channels[n] + absolute_at));
       const LaneMask has_normal =
-          hn::And(hn::Ge(norm_sq, hn::Mul(least, hn::Mul(absolute, absolute))),
-                  hn::Gt(norm_sq, hn::Set(d, 1e-36f)));
-      inverse_norm[n] = hn::IfThenElseZero(has_normal, inverse_sqrt(d, norm_sq));
+          hn::And(hn::Ge(hn::Mul(norm, scale), absolute), hn::Gt(norm_sq, hn::Set(d, 1e-36f)));
+      inverse_norm[n] = hn::IfThenElseZero(has_normal, inverse);
     });
   }
 
