@@ -266,7 +266,8 @@ HWY_NOINLINE void add_thin_kernels(const GatheredKernels& gathered, const ThinKe
                                    const SampleLayout& layout, ColumnBuffer& buffer,
                                    EvaluationCounts& counts) {
   const DepthTag d;
-  const auto field_floats = static_cast<std::size_t>(layout.channels() * ColumnBuffer::planes);
+  const std::size_t field_floats =
+      static_cast<std::size_t>(layout.channels()) * std::size_t{ColumnBuffer::planes};
   for (std::size_t n = 0; n < list.size; ++n) {
     const PixelBox box = list.box_of(n);
     const int first_row = box.row / AreaBuffer::group_size;

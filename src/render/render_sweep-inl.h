@@ -44,7 +44,7 @@ struct SweepMemory {
 
 /// Number of a group's first block.
 constexpr std::size_t first_block(int row, int column) {
-  return static_cast<std::size_t>((row * AreaBuffer::groups + column) * group_blocks);
+  return static_cast<std::size_t>(row * AreaBuffer::groups + column) * std::size_t{group_blocks};
 }
 
 /// Bytes of samples that are worked on together: they stay in the second-level cache.
@@ -54,7 +54,7 @@ inline constexpr std::size_t batch_bytes = 4096 << 10;
 inline int planes_at_once(const FrameContext& context, const SampleLayout& layout) {
   const std::size_t plane_bytes =
       layout.floats_per_sample() * sizeof(float) *
-      static_cast<std::size_t>(AreaBuffer::padded * AreaBuffer::padded * group_blocks);
+      std::size_t{AreaBuffer::padded * AreaBuffer::padded * group_blocks};
   return std::clamp(static_cast<int>(batch_bytes / plane_bytes), 1,
                     std::min(context.samples_per_pass, AreaBuffer::max_planes));
 }

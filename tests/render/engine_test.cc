@@ -233,8 +233,8 @@ TEST(Engines, OneStepAcrossEverything) {
   check(s, "no plane");
 }
 
-TEST(Engines, MoreKernelsInATileThanOneRoundTakes) {
-  // Each of 4,000 kernels reaches all pixels and planes: tens of thousands of entries.
+TEST(Engines, ThousandsOfKernelsInOnePlace) {
+  // Each of 4,000 kernels reaches all pixels and planes.
   std::vector<Point3d> centers;
   centers.reserve(4000);
   for (int i = 0; i < 4000; ++i) {
@@ -249,6 +249,25 @@ TEST(Engines, MoreKernelsInATileThanOneRoundTakes) {
   s.scene.render.width = 9;
   s.scene.render.height = 7;
   check(s, "crowd");
+}
+
+TEST(Engines, NoSeamBetweenShapesOfKernels) {
+  // From less than a pixel across to several areas of the sweep, each a little larger than the one
+  // before, so that every way of summing has some: across the picture and past its edges.
+  std::vector<Point3d> centers;
+  std::vector<float> radii;
+  for (int i = 0; i < 60; ++i) {
+    centers.push_back({2.6 * std::sin(2.1 * i), 1.9 * std::cos(3.7 * i), 0.9 * std::sin(1.3 * i)});
+    radii.push_back(0.008F * std::pow(1.1F, static_cast<float>(i)));
+  }
+  PlainScene s = plain_scene(centers, 5);
+  s.scene.fields[0].radius = radii;
+  s.scene.step_size = 0.06;
+  s.scene.render.width = 110;
+  s.scene.render.height = 80;
+  check(s, "all sizes");
+  s.scene.render.lighting.enabled = true;
+  check(s, "all sizes, lit");
 }
 
 TEST(Engines, MoreFieldsThanOnePassHolds) {
