@@ -272,7 +272,7 @@ HWY_NOINLINE void add_narrow_kernels(LaneTag d, const GatheredKernels& gathered,
       touched += AreaBuffer::padded * num_fields;
     }
     counts.carried_out +=
-        static_cast<std::uint64_t>(kColumns * box.rows() * AreaBuffer::group_pixels);
+        static_cast<std::uint64_t>(box.rows()) * kColumns * AreaBuffer::group_pixels;
   }
 }
 
@@ -333,13 +333,13 @@ HWY_NOINLINE void add_wide_kernels(LaneTag d, const GatheredKernels& gathered,
     reached.find(d, kernel, gathered.support_sq[k], box);
     const std::uint32_t field = gathered.field[k];
     for (int row = 0; row < box.rows(); ++row) {
-      const GroupBits reached_live =
-          reached.of_row[row] & samples.live[static_cast<std::size_t>(box.row + row)] >> box.column;
+      const GroupBits live = samples.live[std::size_t{box.row} + static_cast<std::size_t>(row)];
+      const GroupBits reached_live = reached.of_row[row] & live >> box.column;
       if (reached_live == 0) continue;
       // All between the first and the last, which is simpler to count than those that are live.
       const int first = std::countr_zero(reached_live);
       const int count = std::bit_width(reached_live) - first;
-      counts.carried_out += static_cast<std::uint64_t>(count * AreaBuffer::group_pixels);
+      counts.carried_out += static_cast<std::uint64_t>(count) * AreaBuffer::group_pixels;
       const auto rows = spread_group(d, factors, gathered.cut[k], row);
       float* group = samples.at(box.row + row, box.column + first, field);
       AreaBuffer::PlaneBits* touched =

@@ -292,7 +292,7 @@ HWY_NOINLINE void add_thin_kernels(const GatheredKernels& gathered, const ThinKe
           counts.inside_support += add_to_pixel(d, factors, cut, i, j, samples);
         }
       }
-      counts.carried_out += static_cast<std::uint64_t>(kSize * kSize * depth_lanes);
+      counts.carried_out += std::uint64_t{kSize * kSize * depth_lanes};
     }
   }
 }
