@@ -99,8 +99,8 @@ struct PlaneKernels {
   }
 };
 
-/// First and last group of pixels along one axis that lie within `half` of a centre; the span is
-/// empty where first > last. All in pixels from the area's first.
+/// First and last group of pixels, not yet rounded down, of those along one axis that lie within
+/// `half` of a centre, both in pixels from the area's first; `any`: there are such.
 template <class V>
 struct GroupSpan {
   V first, last;

@@ -10,7 +10,6 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <climits>
 #include <cstdint>
@@ -38,8 +37,9 @@ struct SweepMemory {
   ColumnBuffer columns;
   std::vector<std::uint64_t> visible;  ///< of a group: [block][field], a bit a plane
   static constexpr int num_blocks = AreaBuffer::groups * AreaBuffer::groups * group_blocks;
-  std::array<RayState, num_blocks> blocks;         ///< row of groups by row, as in AreaBuffer
-  std::array<SampleIndex, num_blocks> begin, end;  ///< of each block's rays, as in RayState
+  std::vector<RayState> blocks = std::vector<RayState>(num_blocks);  ///< as in AreaBuffer
+  /// Of each block's rays, as in RayState.
+  std::vector<SampleIndex> begin = std::vector<SampleIndex>(num_blocks), end = begin;
 };
 
 /// Number of a group's first block.
@@ -47,7 +47,7 @@ constexpr std::size_t first_block(int row, int column) {
   return static_cast<std::size_t>(row * AreaBuffer::groups + column) * std::size_t{group_blocks};
 }
 
-/// Bytes of samples that are worked on together: they stay in the second-level cache.
+/// Bytes of samples that are worked on together: all planes of a slab for a few fields.
 inline constexpr std::size_t batch_bytes = 4096 << 10;
 
 /// Planes that are sampled before they are integrated.

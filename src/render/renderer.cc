@@ -17,6 +17,7 @@
 #include "core/error.h"
 #include "core/stopwatch.h"
 #include "render/render_tile.h"
+#include "samples/area_buffer.h"
 
 namespace motes {
 namespace {
@@ -121,7 +122,7 @@ FrameContext make_context(const KernelSet& kernels, const ResolvedScene& scene,
 
 /// Pixels of a side of a tile: small ones share out well among threads; the sweep traverses the
 /// tree once for all of a large one.
-int tile_size_of(Engine engine) { return engine == Engine::sweep ? 64 : 32; }
+int tile_size_of(Engine engine) { return engine == Engine::sweep ? AreaBuffer::size : 32; }
 
 }  // namespace
 

@@ -31,15 +31,18 @@ class AreaBuffer {
   /// layout already; else all are zero and untouched.
   void reserve(const SampleLayout& layout, int num_planes) {
     const std::size_t block_floats = layout.floats_per_sample();
-    if (block_floats == block_floats_ && layout.lanes == lanes_ && num_planes == num_planes_)
+    const auto num_fields = static_cast<std::size_t>(layout.num_fields);
+    if (block_floats == block_floats_ && num_fields == num_fields_ && layout.lanes == lanes_ &&
+        num_planes == num_planes_) {
       return;
+    }
     lanes_ = layout.lanes;
     num_planes_ = num_planes;
     block_floats_ = block_floats;
     plane_floats_ = block_floats * static_cast<std::size_t>(group_pixels / lanes_);
     // A plane of room to spare: groups whose distance is a power of two would share cache sets.
     group_floats_ = plane_floats_ * static_cast<std::size_t>(num_planes + 1);
-    num_fields_ = static_cast<std::size_t>(layout.num_fields);
+    num_fields_ = num_fields;
     values_.assign(static_cast<std::size_t>(padded) * row_floats(), 0.0f);
     touched_.assign(static_cast<std::size_t>(padded * padded) * num_fields_, 0);
   }

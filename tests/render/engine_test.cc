@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "core/error.h"
@@ -268,6 +269,31 @@ TEST(Engines, NoSeamBetweenShapesOfKernels) {
   check(s, "all sizes");
   s.scene.render.lighting.enabled = true;
   check(s, "all sizes, lit");
+}
+
+TEST(Engines, OneLitFieldAndFourUnlitOnesInTurn) {
+  // As many channels in all: what a thread keeps from one frame to the next must fit both.
+  PlainScene one = plain_scene({{0, 0, 0}, {1, 1, 0}, {-1, 1, 1}}, 10);
+  PlainScene four = one;
+  one.scene.render.lighting.enabled = true;
+  for (int f = 1; f < 4; ++f) {
+    four.scene.fields.push_back(four.scene.fields[0]);
+    four.scene.transfer_functions.push_back(ramp(1 + 0.3 * f, 0.3));
+  }
+  const auto render = [](const PlainScene& s) {
+    return Renderer(s.particles, s.scene.fields).render(s.scene, {.threads = 1});
+  };
+  // A new thread has kept nothing.
+  const auto render_anew = [&](const PlainScene& s) {
+    Framebuffer image;
+    std::thread([&] { image = render(s); }).join();
+    return image;
+  };
+  const Framebuffer lit = render_anew(one), unlit = render_anew(four);
+  for (int turn = 0; turn < 3; ++turn) {
+    EXPECT_EQ(render(one), lit) << turn;
+    EXPECT_EQ(render(four), unlit) << turn;
+  }
 }
 
 TEST(Engines, MoreFieldsThanOnePassHolds) {
