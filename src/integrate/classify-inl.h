@@ -49,14 +49,16 @@ HWY_INLINE std::array<Lanes, N> polynomial(LaneTag d, const float (&c)[M],
 /// not drift). kPlain: `largest` is at most 1.
 template <bool kPlain, std::size_t N>
 HWY_INLINE void to_opacity(LaneTag d, float largest, std::array<Lanes, N>& x) {
-  // Minimax polynomials of (1 - exp(-x)) / x on [0, 1/8] and [0, 1].
+  // Minimax polynomials of (1 - exp(-x)) / x on [0, 1/32], [0, 1/8] and [0, 1].
+  constexpr float shortest[] = {9.999999607e-01f, -4.999773329e-01f, 1.647277037e-01f};
   constexpr float shorter[] = {9.999999848e-01f, -4.999960939e-01f, 1.665098696e-01f,
                                -3.964177391e-02f};
   constexpr float longer[] = {9.999999975e-01f,  -4.999997703e-01f, 1.666630980e-01f,
                               -4.164557738e-02f, 8.273095536e-03f,  -1.298663742e-03f,
                               1.283807181e-04f};
-  std::array<Lanes, N> thin =
-      largest <= 0.125f ? polynomial(d, shorter, x) : polynomial(d, longer, x);
+  std::array<Lanes, N> thin = largest <= 0.03125f ? polynomial(d, shortest, x)
+                              : largest <= 0.125f ? polynomial(d, shorter, x)
+                                                  : polynomial(d, longer, x);
   unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR { thin[n] = hn::Mul(thin[n], x[n]); });
   if constexpr (!kPlain) {
     unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR {
@@ -98,7 +100,11 @@ HWY_INLINE Lanes look_up(LaneTag d, const Classifier& c, int row,
   if constexpr (kKind == TableKind::one_segment) {
     return hn::Set(d, entries[0]);
   } else if constexpr (kKind == TableKind::one_vector) {
+#if HWY_TARGET <= HWY_AVX3
+    return Lanes{_mm512_permutexvar_ps(segment.raw, hn::Load(d, entries).raw)};
+#else
     return hn::TableLookupLanes(hn::Load(d, entries), hn::IndicesFromVec(d, segment));
+#endif
   } else if constexpr (kKind == TableKind::two_vectors) {
 #if HWY_TARGET <= HWY_AVX3
     return Lanes{_mm512_permutex2var_ps(hn::Load(d, entries).raw, segment.raw,
@@ -117,7 +123,7 @@ struct TablePlaces {
 };
 
 /// Named colour maps are evenly spaced.
-template <std::size_t N>
+template <TableKind kKind, std::size_t N>
 HWY_INLINE void place_evenly(LaneTag d, const Classifier& c, float begin,
                              const std::array<Lanes, N>& argument, TablePlaces<N>& out) {
   const hn::RebindToSigned<LaneTag> di;
@@ -125,14 +131,23 @@ HWY_INLINE void place_evenly(LaneTag d, const Classifier& c, float begin,
   const Lanes first = hn::Set(d, -begin * c.inverse_spacing);
   // Just short of the end, so that the last segment's end is no segment of its own.
   const Lanes end = hn::Set(d, static_cast<float>(c.num_segments) * (1 - 0x1p-23f));
-  // Adding 1.5 * 2^23 rounds to an integer and leaves it in the low bits of the sum. Half a segment
-  // less rounds down; between two segments either will do.
-  const Lanes half = hn::Set(d, 0.5f), shifter = hn::Set(d, 12582912.0f);
+  // Adding 1.5 * 2^23 rounds to an integer and leaves it in the low bits of the sum.
+  const Lanes shifter = hn::Set(d, 12582912.0f);
   unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR {
     const Lanes from_begin = hn::MulAdd(argument[n], per_segment, first);
     const Lanes place = hn::Min(hn::Max(from_begin, hn::Zero(d)), end);
-    const Lanes sum = hn::Add(hn::Sub(place, half), shifter);
-    out.segment[n] = hn::And(hn::BitCast(di, sum), hn::Set(di, 0xffff));
+#if HWY_TARGET <= HWY_AVX3
+    const Lanes sum{
+        _mm512_add_round_ps(place.raw, shifter.raw, _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC)};
+#else
+    // Half a segment less rounds down; between two segments either will do.
+    const Lanes sum = hn::Add(hn::Sub(place, hn::Set(d, 0.5f)), shifter);
+#endif
+    out.segment[n] = hn::BitCast(di, sum);
+    // A permutation of AVX-512 reads no more than the low bits.
+    if constexpr (HWY_TARGET > HWY_AVX3 || kKind == TableKind::many) {
+      out.segment[n] = hn::And(out.segment[n], hn::Set(di, 0xffff));
+    }
     out.fraction[n] = hn::Sub(place, hn::Sub(sum, shifter));
   });
 }
@@ -160,7 +175,7 @@ HWY_INLINE TablePlaces<N> find_segments(LaneTag d, const Classifier& c,
   const float* const begins = row_of<kKind>(c, Classifier::begin);
   TablePlaces<N> out;
   if (kKind != TableKind::one_segment && c.inverse_spacing > 0) {
-    place_evenly(d, c, begins[0], argument, out);
+    place_evenly<kKind>(d, c, begins[0], argument, out);
     return out;
   }
   out.segment.fill(hn::Zero(di));
@@ -214,37 +229,48 @@ HWY_NOINLINE Lanes broken_power(LaneTag d, Lanes x, float power) {
 }
 
 /// Shininess that takes a few multiplications alone: x^32 is five.
-inline bool is_plain_power(float power) { return power <= 1024 && power == std::floor(power); }
+inline bool is_plain_power(float power) {
+  return power >= 1 && power <= 1024 && power == std::floor(power);
+}
 
-/// x^power for x in [0, 1], power > 0. kPlain: is_plain_power().
-template <bool kPlain, std::size_t N>
-HWY_INLINE void raise(LaneTag d, float power, std::array<Lanes, N>& x) {
-  if constexpr (!kPlain) {
-    if (!is_plain_power(power)) {
-      for (Lanes& each : x) each = broken_power(d, each, power);
-      return;
-    }
-  }
-  auto bits = static_cast<unsigned>(power);
-  for (; (bits & 1) == 0; bits >>= 1) {
-    unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR { x[n] = hn::Mul(x[n], x[n]); });
-  }
-  if (HWY_LIKELY(bits == 1)) return;
+/// x^power for an odd power.
+template <std::size_t N>
+HWY_INLINE void raise_to_odd(LaneTag, unsigned power, std::array<Lanes, N>& x) {
   std::array<Lanes, N> square = x;
-  for (bits >>= 1; bits != 0; bits >>= 1) {
+  for (power >>= 1; power != 0; power >>= 1) {
     unroll<N>([&](std::size_t n)
                   MOTES_INLINE HWY_ATTR { square[n] = hn::Mul(square[n], square[n]); });
-    if ((bits & 1) == 0) continue;
+    if ((power & 1) == 0) continue;
     unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR { x[n] = hn::Mul(x[n], square[n]); });
   }
 }
 
-/// 1 / sqrt(x), relative error below 4e-7; anything finite for x = 0.
-HWY_INLINE Lanes inverse_sqrt(LaneTag d, Lanes x) {
-  const Lanes guess = hn::ApproximateReciprocalSqrt(hn::Max(x, hn::Set(d, 1e-36f)));
+/// x^power for x in [0, 1], power > 0. kPlain: is_plain_power().
+template <bool kPlain, std::size_t N>
+HWY_INLINE void raise(LaneTag d, float power, std::array<Lanes, N>& x) {
+  if (!kPlain && !is_plain_power(power)) {
+    for (Lanes& each : x) each = broken_power(d, each, power);
+    return;
+  }
+  auto left = static_cast<unsigned>(power);
+  for (; (left & 1) == 0; left >>= 1) {
+    unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR { x[n] = hn::Mul(x[n], x[n]); });
+  }
+  if (HWY_UNLIKELY(left != 1)) raise_to_odd(d, left, x);
+}
+
+/// 2 / sqrt(x), relative error below 4e-7; anything for x = 0.
+template <std::size_t N>
+HWY_INLINE std::array<Lanes, N> twice_inverse_sqrt(LaneTag d, const std::array<Lanes, N>& x) {
+  std::array<Lanes, N> root;
+  unroll<N>([&](std::size_t n)
+                MOTES_INLINE HWY_ATTR { root[n] = hn::ApproximateReciprocalSqrt(x[n]); });
   // One step of Newton's method.
-  const Lanes half = hn::Mul(hn::Mul(hn::Set(d, 0.5f), x), guess);
-  return hn::Mul(guess, hn::NegMulAdd(half, guess, hn::Set(d, 1.5f)));
+  unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR {
+    const Lanes square = hn::Mul(hn::Mul(x[n], root[n]), root[n]);
+    root[n] = hn::Mul(root[n], hn::Sub(hn::Set(d, 3.0f), square));
+  });
+  return root;
 }
 
 /// What a block's samples are classified and lit with.
@@ -252,48 +278,74 @@ struct BlockShading {
   const std::vector<Classifier>& classifiers;
   const ShadingConstants& constants;
   const SampleLayout& layout;
-  Lanes length;     ///< of the rays' directions
-  Lanes to_eye[3];  ///< unit vectors, with gradients
+  Lanes length;  ///< of the rays' directions
+  /// With gradients: half of the unit vectors to the light, and halfway from it to the eye.
+  Lanes half_to_light[3], half_halfway[3];
+
+  BlockShading(LaneTag d, const std::vector<Classifier>& the_classifiers,
+               const ShadingConstants& the_constants, const SampleLayout& the_layout,
+               const RayState& rays)
+      : classifiers(the_classifiers),
+        constants(the_constants),
+        layout(the_layout),
+        length(hn::Load(d, rays.length)) {
+    for (int i = 0; i < 3; ++i) {
+      half_to_light[i] = half_halfway[i] = hn::Load(d, rays.half_to_eye[i]);
+    }
+    if (constants.headlight || !layout.gradients) return;
+    for (int i = 0; i < 3; ++i) {
+      half_to_light[i] = hn::Set(d, 0.5f * constants.light[i]);
+      half_halfway[i] = hn::Add(half_to_light[i], half_halfway[i]);
+    }
+    const Lanes sum_sq = hn::MulAdd(
+        half_halfway[0], half_halfway[0],
+        hn::MulAdd(half_halfway[1], half_halfway[1], hn::Mul(half_halfway[2], half_halfway[2])));
+    const Lanes scale = hn::IfThenElseZero(hn::Gt(sum_sq, hn::Set(d, 1e-36f)),
+                                           hn::Div(hn::Set(d, 0.5f), hn::Sqrt(sum_sq)));
+    for (Lanes& each : half_halfway) each = hn::Mul(each, scale);
+  }
 };
 
-/// Lit samples of a field: factor on the colour, and what is added to it.
+/// Cosines of samples' normals with the light and with the direction halfway to the eye, of which
+/// the latter is raised to the shininess.
 template <std::size_t N>
 struct Light {
   std::array<Lanes, N> diffuse, specular;
 };
 
-/// Gradients of some samples of a field, and one over their norms; 0 where there is no normal.
+/// Gradients of some samples of a field, and two over their norms; 0 where there is no normal.
 template <std::size_t N>
 struct Normals {
-  std::array<Lanes, N> x, y, z, inverse_norm;
+  std::array<Lanes, N> x, y, z, scale;
 
   HWY_INLINE void load(LaneTag d, const SampleLayout& layout, float min_radius,
                        const std::array<const float*, N>& channels) {
     // Where kernels cancel there is no normal: |gradient| min_radius < 1e-6 sum |phi|.
     const auto absolute_at =
         static_cast<std::size_t>(layout.absolute ? layout.absolute_channel() * num_lanes : 0);
-    const Lanes scale = hn::Set(d, 1e6f * min_radius);
+    const Lanes least_scale = hn::Set(d, 1e-6f / min_radius);
+    std::array<Lanes, N> norm_sq, least;
     unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR {
       x[n] = hn::Load(d, channels[n] + num_lanes);
       y[n] = hn::Load(d, channels[n] + 2 * num_lanes);
       z[n] = hn::Load(d, channels[n] + 3 * num_lanes);
+      norm_sq[n] = hn::MulAdd(x[n], x[n], hn::MulAdd(y[n], y[n], hn::Mul(z[n], z[n])));
+      least[n] = hn::Mul(hn::Load(d, channels[n] + absolute_at), least_scale);
     });
+    const std::array<Lanes, N> twice_inverse = twice_inverse_sqrt(d, norm_sq);
     unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR {
-      const Lanes norm_sq = hn::MulAdd(x[n], x[n], hn::MulAdd(y[n], y[n], hn::Mul(z[n], z[n])));
-      const Lanes inverse = inverse_sqrt(d, norm_sq), norm = hn::Mul(norm_sq, inverse);
-      const Lanes absolute = hn::Abs(hn::Load(d, channels[n] + absolute_at));
-      const LaneMask has_normal =
-          hn::And(hn::Ge(hn::Mul(norm, scale), absolute), hn::Gt(norm_sq, hn::Set(d, 1e-36f)));
-      inverse_norm[n] = hn::IfThenElseZero(has_normal, inverse);
+      const Lanes least_sq = hn::MulAdd(least[n], least[n], hn::Set(d, 1e-36f));
+      scale[n] = hn::IfThenElseZero(hn::Gt(norm_sq[n], least_sq), twice_inverse[n]);
     });
   }
 
-  /// Cosines of the angles with unit vectors, without their signs.
-  HWY_INLINE std::array<Lanes, N> along(LaneTag d, const Lanes v[3]) const {
+  /// Cosines of the angles with twice the vectors, without their signs.
+  HWY_INLINE std::array<Lanes, N> along(LaneTag d, const Lanes half[3]) const {
     std::array<Lanes, N> cosine;
     unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR {
-      const Lanes sum = hn::MulAdd(x[n], v[0], hn::MulAdd(y[n], v[1], hn::Mul(z[n], v[2])));
-      cosine[n] = hn::Min(hn::Abs(hn::Mul(sum, inverse_norm[n])), hn::Set(d, 1.0f));
+      const Lanes sum =
+          hn::MulAdd(x[n], half[0], hn::MulAdd(y[n], half[1], hn::Mul(z[n], half[2])));
+      cosine[n] = hn::Min(hn::Abs(hn::Mul(sum, scale[n])), hn::Set(d, 1.0f));
     });
     return cosine;
   }
@@ -307,27 +359,9 @@ HWY_INLINE Light<N> light_samples(LaneTag d, const BlockShading& shading, std::s
   Normals<N> normals;
   normals.load(d, shading.layout, constants.min_radius[field], channels);
   Light<N> light;
-  if (kPlain || constants.headlight) {
-    light.diffuse = light.specular = normals.along(d, shading.to_eye);
-  } else {
-    Lanes l[3], h[3];
-    for (int i = 0; i < 3; ++i) {
-      l[i] = hn::Set(d, constants.light[i]);
-      h[i] = hn::Add(l[i], shading.to_eye[i]);
-    }
-    const Lanes h_sq = hn::MulAdd(h[0], h[0], hn::MulAdd(h[1], h[1], hn::Mul(h[2], h[2])));
-    const Lanes h_scale =
-        hn::IfThenElseZero(hn::Gt(h_sq, hn::Set(d, 1e-36f)), inverse_sqrt(d, h_sq));
-    for (Lanes& component : h) component = hn::Mul(component, h_scale);
-    light.diffuse = normals.along(d, l);
-    light.specular = normals.along(d, h);
-  }
+  light.diffuse = light.specular = normals.along(d, shading.half_to_light);
+  if (!constants.headlight) light.specular = normals.along(d, shading.half_halfway);
   raise<kPlain>(d, constants.shininess, light.specular);
-  unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR {
-    light.diffuse[n] =
-        hn::MulAdd(hn::Set(d, constants.diffuse), light.diffuse[n], hn::Set(d, constants.ambient));
-    light.specular[n] = hn::Mul(hn::Set(d, constants.specular), light.specular[n]);
-  });
   return light;
 }
 
@@ -335,14 +369,15 @@ HWY_INLINE Light<N> light_samples(LaneTag d, const BlockShading& shading, std::s
 template <std::size_t N>
 struct Contributions {
   std::array<Lanes, N> opacity;
-  std::array<Lanes, N> color[3];  ///< lit; not weighted by the opacity
+  std::array<Lanes, N> color[3];  ///< not weighted by the opacity
+  Light<N> light;                 ///< with gradients
 };
 
-/// Nothing is needed that takes a call: no logarithm, no opacity of thick samples, no broken power,
-/// no light but that of the eye. Registers need not be kept for it then.
+/// Nothing is needed that takes a call: no logarithm, no opacity of thick samples, no broken power.
+/// Registers need not be kept for it then.
 inline bool is_plain(const std::vector<Classifier>& classifiers,
                      const ShadingConstants& constants) {
-  return constants.headlight && is_plain_power(constants.shininess) &&
+  return is_plain_power(constants.shininess) &&
          std::none_of(classifiers.begin(), classifiers.end(), [&](const Classifier& c) {
            return c.log_scale || c.max_depth * constants.max_ray_length > 1;
          });
@@ -367,15 +402,14 @@ HWY_INLINE void classify(LaneTag d, const BlockShading& shading, std::size_t fie
   to_opacity<kPlain>(d, c.max_depth * shading.constants.max_ray_length, out.opacity);
   unroll<3>([&](std::size_t i)
                 HWY_ATTR { read_table<kKind>(d, c, static_cast<int>(i), places, out.color[i]); });
-  if constexpr (kGradients) {
-    const Light<N> light = light_samples<kPlain>(d, shading, field, channels);
-    unroll<3>([&](std::size_t i) MOTES_INLINE HWY_ATTR {
-      auto& color = out.color[i];
-      unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR {
-        color[n] = hn::MulAdd(color[n], light.diffuse[n], light.specular[n]);
-      });
-    });
-  }
+  if constexpr (kGradients) out.light = light_samples<kPlain>(d, shading, field, channels);
+}
+
+/// What is left of a colour in the light.
+template <std::size_t N>
+HWY_INLINE Lanes diffuse_factor(LaneTag d, const ShadingConstants& constants, const Light<N>& light,
+                                std::size_t n) {
+  return hn::MulAdd(hn::Set(d, constants.diffuse), light.diffuse[n], hn::Set(d, constants.ambient));
 }
 
 }  // namespace HWY_NAMESPACE

@@ -57,23 +57,39 @@ struct SampleChunk {
 /// Rays of a block on their way through a slab, samples counted from its begin.
 struct BlockRays {
   Lanes first, last;
-  LaneMask alive;         ///< have samples in the slab and have not ended
-  Lanes color[3], alpha;  ///< so far
+  LaneMask alive;                ///< have samples in the slab and have not ended
+  Lanes color[3], transparency;  ///< so far
+  Lanes highlight;               ///< light that is white, before the factor for specular light
   bool any_ended = false;
 
-  /// Adds a field's part of a sample to `rays`. Listing 1 of the paper.
-  HWY_INLINE void composite(LaneTag d, LaneMask rays, Lanes opacity, Lanes r, Lanes g, Lanes b) {
-    const Lanes weight =
-        hn::IfThenElseZero(rays, hn::Mul(hn::Sub(hn::Set(d, 1.0f), alpha), opacity));
-    color[0] = hn::MulAdd(weight, r, color[0]);
-    color[1] = hn::MulAdd(weight, g, color[1]);
-    color[2] = hn::MulAdd(weight, b, color[2]);
-    alpha = hn::Add(alpha, weight);
+  /// Lets `rays` through a sample; what they see of it.
+  HWY_INLINE Lanes pass(LaneTag, LaneMask rays, Lanes opacity) {
+    const Lanes weight = hn::IfThenElseZero(rays, hn::Mul(transparency, opacity));
+    transparency = hn::Sub(transparency, weight);
+    return weight;
+  }
+
+  HWY_INLINE LaneMask opaque(LaneTag, Lanes least_transparency) const {
+    return hn::And(alive, hn::Lt(transparency, least_transparency));
+  }
+
+  /// Adds what of a field's sample is seen: its part of what rays get, in the n-th place of `from`.
+  /// Listing 1 of the paper.
+  template <bool kGradients, std::size_t N>
+  HWY_INLINE void add(LaneTag d, const ShadingConstants& constants, const Contributions<N>& from,
+                      std::size_t n, Lanes weight) {
+    if constexpr (kGradients) {
+      highlight = hn::MulAdd(weight, from.light.specular[n], highlight);
+      weight = hn::Mul(weight, diffuse_factor(d, constants, from.light, n));
+    }
+    unroll<3>([&](std::size_t i) MOTES_INLINE HWY_ATTR {
+      color[i] = hn::MulAdd(weight, from.color[i][n], color[i]);
+    });
   }
 
   /// Ends rays that are opaque enough after all fields of a sample; false if none goes on.
-  HWY_INLINE bool end_opaque(LaneTag d, Lanes termination, int sample) {
-    const LaneMask ends = hn::And(alive, hn::Gt(alpha, termination));
+  HWY_INLINE bool end_opaque(LaneTag d, Lanes least_transparency, int sample) {
+    const LaneMask ends = opaque(d, least_transparency);
     if (HWY_LIKELY(hn::AllFalse(d, ends))) return true;
     last = hn::IfThenElse(ends, hn::Set(d, static_cast<float>(sample)), last);
     alive = hn::AndNot(ends, alive);
@@ -87,6 +103,43 @@ struct BlockRays {
   }
 };
 
+/// Composites samples of one field, one after the other, ending rays at each: false if none goes
+/// on. Samples behind the chunk's are left out.
+template <bool kGradients, std::size_t N>
+HWY_INLINE bool composite_chunk(LaneTag d, const ShadingConstants& constants,
+                                const SampleChunk<samples_at_once>& chunk,
+                                const Contributions<N>& samples, bool zero_shows,
+                                Lanes least_transparency, BlockRays& rays) {
+  bool go_on = true;
+  unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR {
+    if (n >= chunk.count || !go_on) return;
+    const LaneMask add = HWY_UNLIKELY(zero_shows) ? rays.alive_at(d, chunk.sample[n]) : rays.alive;
+    const Lanes weight = rays.pass(d, add, samples.opacity[n]);
+    rays.add<kGradients>(d, constants, samples, n, weight);
+    go_on = rays.end_opaque(d, least_transparency, chunk.sample[n]);
+  });
+  return go_on;
+}
+
+/// The same for a full chunk at which every ray under way has a sample and none ends, as in most;
+/// changes nothing and returns false if one does.
+template <bool kGradients, std::size_t N>
+HWY_INLINE bool composite_unended(LaneTag d, const ShadingConstants& constants,
+                                  const Contributions<N>& samples, Lanes least_transparency,
+                                  BlockRays& rays) {
+  BlockRays after = rays;
+  std::array<Lanes, N> weight;
+  unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR {
+    weight[n] = after.pass(d, rays.alive, samples.opacity[n]);
+  });
+  if (HWY_UNLIKELY(!hn::AllFalse(d, after.opaque(d, least_transparency)))) return false;
+  rays.transparency = after.transparency;
+  unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR {
+    rays.add<kGradients>(d, constants, samples, n, weight[n]);
+  });
+  return true;
+}
+
 /// Adds the visible samples of the only field; bit i of `visible` is sample i. `zero_shows`:
 /// something may be seen where there is no kernel, so that a ray's first and last sample matter;
 /// else samples outside of the volume show nothing by themselves.
@@ -94,7 +147,8 @@ template <bool kGradients, bool kPlain, TableKind kKind>
 HWY_INLINE void add_field(LaneTag d, const BlockShading& shading, const SlabSamples& samples,
                           bool zero_shows, std::uint64_t visible, BlockRays& rays_out) {
   BlockRays rays = rays_out;
-  const Lanes termination = hn::Set(d, shading.constants.termination_opacity);
+  const ShadingConstants& constants = shading.constants;
+  const Lanes least_transparency = hn::Set(d, 1 - constants.termination_opacity);
   // False if no ray goes on.
   const auto add_chunk = [&]<std::size_t N>(const SampleChunk<samples_at_once>& chunk) HWY_ATTR {
     std::array<const float*, N> channels;
@@ -103,15 +157,12 @@ HWY_INLINE void add_field(LaneTag d, const BlockShading& shading, const SlabSamp
     });
     Contributions<N> out;
     classify<kGradients, kPlain, kKind>(d, shading, 0, channels, out);
-    bool go_on = true;
-    unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR {
-      if (n >= chunk.count || !go_on) return;
-      const LaneMask add =
-          HWY_UNLIKELY(zero_shows) ? rays.alive_at(d, chunk.sample[n]) : rays.alive;
-      rays.composite(d, add, out.opacity[n], out.color[0][n], out.color[1][n], out.color[2][n]);
-      go_on = rays.end_opaque(d, termination, chunk.sample[n]);
-    });
-    return go_on;
+    if (HWY_LIKELY(chunk.count == N && !zero_shows) &&
+        composite_unended<kGradients>(d, constants, out, least_transparency, rays)) {
+      return true;
+    }
+    return composite_chunk<kGradients>(d, constants, chunk, out, zero_shows, least_transparency,
+                                       rays);
   };
   while (visible != 0) {
     const SampleChunk<samples_at_once> chunk(visible);
@@ -129,7 +180,7 @@ using FieldsChunk = SampleChunk<2 * samples_at_once>;
 
 /// What a field adds at a sample, on its way from classification to compositing.
 struct StoredContribution {
-  alignas(64) float opacity[max_lanes], r[max_lanes], g[max_lanes], b[max_lanes];
+  alignas(64) float opacity[max_lanes], color[3][max_lanes];
 };
 
 /// Classifies a field at those samples of a chunk where it may be seen, into `out`, an element a
@@ -154,9 +205,13 @@ HWY_INLINE void classify_chunk(LaneTag d, const BlockShading& shading, const Sla
     for (std::size_t n = 0; n < N && begin + n < count; ++n) {
       StoredContribution& each = out[members[begin + n]];
       hn::Store(some.opacity[n], d, each.opacity);
-      hn::Store(some.color[0][n], d, each.r);
-      hn::Store(some.color[1][n], d, each.g);
-      hn::Store(some.color[2][n], d, each.b);
+      if constexpr (kGradients) {
+        const ShadingConstants& constants = shading.constants;
+        const Lanes diffuse = diffuse_factor(d, constants, some.light, n);
+        const Lanes highlight = hn::Mul(hn::Set(d, constants.specular), some.light.specular[n]);
+        for (auto& color : some.color) color[n] = hn::MulAdd(color[n], diffuse, highlight);
+      }
+      for (std::size_t i = 0; i < 3; ++i) hn::Store(some.color[i][n], d, each.color[i]);
     }
   };
   std::size_t begin = 0;
@@ -171,7 +226,7 @@ template <bool kGradients, bool kPlain, TableKind kKind>
 HWY_INLINE void add_fields(LaneTag d, const BlockShading& shading, const SlabSamples& samples,
                            bool zero_shows, const std::uint64_t* visible, BlockRays& rays_out) {
   BlockRays rays = rays_out;
-  const Lanes termination = hn::Set(d, shading.constants.termination_opacity);
+  const Lanes least_transparency = hn::Set(d, 1 - shading.constants.termination_opacity);
   const std::size_t num_fields = shading.classifiers.size();
   static thread_local AlignedVector<StoredContribution> stored(max_fields * FieldsChunk::most);
   StoredContribution* const contributions = stored.data();
@@ -189,10 +244,12 @@ HWY_INLINE void add_fields(LaneTag d, const BlockShading& shading, const SlabSam
       for (std::size_t f = 0; f < num_fields; ++f) {
         if ((visible[f] >> chunk.sample[n] & 1) == 0) continue;
         const StoredContribution& each = contributions[f * FieldsChunk::most + n];
-        rays.composite(d, add, hn::Load(d, each.opacity), hn::Load(d, each.r), hn::Load(d, each.g),
-                       hn::Load(d, each.b));
+        const Lanes weight = rays.pass(d, add, hn::Load(d, each.opacity));
+        for (std::size_t i = 0; i < 3; ++i) {
+          rays.color[i] = hn::MulAdd(weight, hn::Load(d, each.color[i]), rays.color[i]);
+        }
       }
-      if (!rays.end_opaque(d, termination, chunk.sample[n])) {
+      if (!rays.end_opaque(d, least_transparency, chunk.sample[n])) {
         left = 0;
         break;
       }
@@ -229,14 +286,9 @@ HWY_INLINE void integrate_slab(const std::vector<Classifier>& classifiers,
   block.color[0] = hn::Load(d, rays.r);
   block.color[1] = hn::Load(d, rays.g);
   block.color[2] = hn::Load(d, rays.b);
-  block.alpha = hn::Load(d, rays.a);
-  const Lanes length = hn::Load(d, rays.length);
-  BlockShading shading{classifiers, constants, layout, length, {length, length, length}};
-  if constexpr (kGradients) {
-    shading.to_eye[2] = hn::Div(hn::Set(d, -1.0f), length);
-    shading.to_eye[0] = hn::Mul(hn::Load(d, rays.direction_x), shading.to_eye[2]);
-    shading.to_eye[1] = hn::Mul(hn::Load(d, rays.direction_y), shading.to_eye[2]);
-  }
+  block.transparency = hn::Load(d, rays.transparency);
+  block.highlight = hn::Zero(d);
+  const BlockShading shading(d, classifiers, constants, layout, rays);
   const bool zero_shows =
       std::any_of(classifiers.begin(), classifiers.end(),
                   [](const Classifier& c) { return c.visibility.shows_zero(); });
@@ -263,10 +315,14 @@ HWY_INLINE void integrate_slab(const std::vector<Classifier>& classifiers,
   if (block.any_ended) {
     rays.end = slab.first + static_cast<int>(hn::GetLane(hn::MaxOfLanes(d, block.last)));
   }
+  if constexpr (kGradients) {
+    const Lanes specular = hn::Set(d, constants.specular);
+    for (Lanes& each : block.color) each = hn::MulAdd(specular, block.highlight, each);
+  }
   hn::Store(block.color[0], d, rays.r);
   hn::Store(block.color[1], d, rays.g);
   hn::Store(block.color[2], d, rays.b);
-  hn::Store(block.alpha, d, rays.a);
+  hn::Store(block.transparency, d, rays.transparency);
   hn::Store(hn::Add(block.last, slab_first), d, rays.last);
 }
 

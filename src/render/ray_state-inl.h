@@ -82,12 +82,15 @@ inline void start_rays(const FrameContext& context, int px, int py, int width, i
     end = hn::Max(end, hn::IfThenElse(any, relative_last, end));
     store(hn::IfThenElseZero(any, relative_first), rays.first + i);
     store(hn::IfThenElse(any, relative_last, hn::Set(d, -1.0)), rays.last + i);
-    store(direction_x, rays.direction_x + i);
-    store(direction_y, rays.direction_y + i);
-    store(hn::Sqrt(hn::MulAdd(direction_x, direction_x,
-                              hn::MulAdd(direction_y, direction_y, hn::Set(d, 1.0)))),
-          rays.length + i);
-    for (float* channel : {rays.r, rays.g, rays.b, rays.a}) store(hn::Zero(d), channel + i);
+    const V length = hn::Sqrt(hn::MulAdd(direction_x, direction_x,
+                                         hn::MulAdd(direction_y, direction_y, hn::Set(d, 1.0))));
+    const V half_to_eye = hn::Div(hn::Set(d, -0.5), length);
+    store(length, rays.length + i);
+    store(hn::Mul(direction_x, half_to_eye), rays.half_to_eye[0] + i);
+    store(hn::Mul(direction_y, half_to_eye), rays.half_to_eye[1] + i);
+    store(half_to_eye, rays.half_to_eye[2] + i);
+    for (float* channel : {rays.r, rays.g, rays.b}) store(hn::Zero(d), channel + i);
+    store(hn::Set(d, 1.0), rays.transparency + i);
   }
   rays.begin = static_cast<SampleIndex>(hn::GetLane(hn::MinOfLanes(d, begin)));
   rays.end = static_cast<SampleIndex>(hn::GetLane(hn::MaxOfLanes(d, end)));

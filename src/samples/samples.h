@@ -48,10 +48,11 @@ struct RayState {
   /// Samples inside the volume's box, both included; first > last: none. A ray that ends early has
   /// its last sample moved up. Whole numbers, exact in float: a frame has at most 1e7 planes.
   alignas(64) float first[max_lanes], last[max_lanes];
-  SampleIndex begin = 0, end = -1;  ///< of all lanes; begin > end: none
-  alignas(64) float direction_x[max_lanes], direction_y[max_lanes];
-  alignas(64) float length[max_lanes];  ///< of the direction
-  alignas(64) float r[max_lanes], g[max_lanes], b[max_lanes], a[max_lanes];
+  SampleIndex begin = 0, end = -1;              ///< of all lanes; begin > end: none
+  alignas(64) float length[max_lanes];          ///< of the direction
+  alignas(64) float half_to_eye[3][max_lanes];  ///< half of the unit vector to the eye
+  alignas(64) float r[max_lanes], g[max_lanes], b[max_lanes];
+  alignas(64) float transparency[max_lanes];  ///< 1 - opacity
 };
 
 /// Channels of a field at a sample: its value; with `gradients` its gradient in camera axes; with
