@@ -21,6 +21,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <numbers>
+#include <span>
 
 #include "field/gather-inl.h"
 #include "field/sampling-inl.h"
@@ -215,28 +216,83 @@ struct EvaluationCounts {
   std::uint64_t inside_support = 0;  ///< if Channels::count
 };
 
-/// Groups with rays under way, one element a row.
-using LiveGroups = std::array<GroupBits, AreaBuffer::padded>;
+/// Groups with rays under way.
+class LiveGroups {
+ public:
+  GroupBits row(int i) const { return rows_[static_cast<std::size_t>(i)]; }
 
-/// Samples of one plane of the area.
+  /// Sets all rows; those behind the area's have none.
+  void set(const std::array<GroupBits, AreaBuffer::padded>& rows) {
+    rows_ = rows;
+    for (std::size_t row = 0; row < AreaBuffer::groups; ++row) {
+      std::uint16_t count = 0;
+      for (std::size_t column = 0; column < AreaBuffer::groups; ++column) {
+        count = static_cast<std::uint16_t>(count + (rows[row] >> column & 1));
+        before_[row + 1][column + 1] = static_cast<std::uint16_t>(before_[row][column + 1] + count);
+      }
+    }
+  }
+
+  bool any_in(const GroupBox& box) const {
+    const auto &low = before_[box.row], &high = before_[std::size_t{box.last_row} + 1];
+    const std::size_t begin = box.column, end = std::size_t{box.last_column} + 1;
+    return high[end] - high[begin] != low[end] - low[begin];
+  }
+
+ private:
+  std::array<GroupBits, AreaBuffer::padded> rows_{};  ///< a bit each
+  /// How many lie above and to the left of the corner of a group.
+  std::uint16_t before_[AreaBuffer::groups + 1][AreaBuffer::groups + 1] = {};
+};
+
+/// Samples of some planes of the area.
 struct PlaneSamples {
+  const AreaPlane* planes;
   AreaBuffer& buffer;
-  int plane;
   std::size_t field_floats;  ///< from a field of a block to the next
   const LiveGroups& live;
 
-  float* at(int row, int column, std::uint32_t field) const {
-    return buffer.at(row, column) + static_cast<std::size_t>(plane) * buffer.plane_floats() +
-           field * field_floats;
+  float* at(int row, int column, std::uint32_t field, std::size_t plane) const {
+    return buffer.at(row, column) + plane * buffer.plane_floats() + field * field_floats;
   }
-  AreaBuffer::PlaneBits bit() const { return AreaBuffer::PlaneBits{1} << plane; }
-  bool any_live(const GroupBox& box) const {
-    const GroupBits columns = (2u << box.last_column) - (1u << box.column);
-    GroupBits any = 0;
-    for (int row = box.row; row <= box.last_row; ++row) {
-      any |= live[static_cast<std::size_t>(row)];
+};
+
+/// Some kernels with their factors: worked out for all before the first is added, they do not wait
+/// for each other. For boxes of at most kColumns columns.
+template <int kColumns, class C>
+struct KernelBatch {
+  static constexpr std::size_t most = 16;
+  struct Member {
+    GroupBox box;
+    float cut, disc_sq;
+    float* samples;                  ///< of the box's first group: the field's channel 0
+    AreaBuffer::PlaneBits* touched;  ///< of the box's first group, the field's
+    AreaBuffer::PlaneBits bit;       ///< the plane's
+    SweptKernel kernel;
+    BoxFactors<kColumns, AreaBuffer::groups, C> factors;
+  };
+  Member members[most];
+  std::size_t count = 0;
+
+  /// Takes the next ones of `list`, but those without rays under way.
+  HWY_INLINE void fill(LaneTag d, const GatheredKernels& gathered, const PlaneSamples& samples,
+                       std::span<const BoxedKernel>& list) {
+    count = 0;
+    for (; !list.empty() && count < most; list = list.subspan(1)) {
+      const GroupBox box = list[0].box;
+      if (!samples.live.any_in(box)) continue;
+      const std::size_t k = list[0].kernel(), plane = list[0].plane();
+      Member& out = members[count++];
+      out.box = box;
+      out.cut = gathered.cut[k];
+      out.samples = samples.at(box.row, box.column, gathered.field[k], plane);
+      out.touched = samples.buffer.touched(box.row, box.column) + gathered.field[k];
+      out.bit = AreaBuffer::PlaneBits{1} << plane;
+      out.kernel = place_kernel(gathered, k, samples.planes[plane], box);
+      out.disc_sq = gathered.support_sq[k] - out.kernel.dz * out.kernel.dz;
+      const int columns = kColumns < AreaBuffer::groups ? kColumns : box.columns();
+      out.factors.fill(d, out.kernel, columns, box.rows());
     }
-    return (any & columns) != 0;
   }
 };
 
@@ -244,35 +300,33 @@ struct PlaneSamples {
 /// which of these a kernel reaches, and few do not.
 template <int kColumns, class C>
 HWY_NOINLINE void add_narrow_kernels(LaneTag d, const GatheredKernels& gathered,
-                                     const BoxedKernels& list, const AreaPlane& plane,
-                                     const PlaneSamples& samples, EvaluationCounts& counts) {
+                                     std::span<const BoxedKernel> list, const PlaneSamples& samples,
+                                     EvaluationCounts& counts) {
   const std::size_t row_floats = samples.buffer.row_floats();
   const std::size_t group_floats = samples.buffer.group_floats();
   const std::size_t block_floats = samples.buffer.block_floats();
   const std::size_t num_fields = samples.buffer.num_fields();
-  const AreaBuffer::PlaneBits bit = samples.bit();
-  for (std::size_t i = 0; i < list.size; ++i) {
-    const GroupBox box = list.box_of(i);
-    if (!samples.any_live(box)) continue;
-    const std::size_t k = list.kernel[i];
-    BoxFactors<kColumns, AreaBuffer::groups, C> factors;
-    factors.fill(d, place_kernel(gathered, k, plane, box), kColumns, box.rows());
-    const std::uint32_t field = gathered.field[k];
-    AreaBuffer::PlaneBits* touched = samples.buffer.touched(box.row, box.column) + field;
-    float* group = samples.at(box.row, box.column, field);
-    for (int row = 0; row < box.rows(); ++row) {
-      const auto rows = spread_group(d, factors, gathered.cut[k], row);
-      for (int column = 0; column < kColumns; ++column) {
-        touched[static_cast<std::size_t>(column) * num_fields] |= bit;
-        counts.inside_support +=
-            add_to_group(d, factors, rows, column,
-                         group + static_cast<std::size_t>(column) * group_floats, block_floats);
+  KernelBatch<kColumns, C> batch;
+  while (!list.empty()) {
+    batch.fill(d, gathered, samples, list);
+    for (std::size_t i = 0; i < batch.count; ++i) {
+      const auto& kernel = batch.members[i];
+      AreaBuffer::PlaneBits* touched = kernel.touched;
+      float* group = kernel.samples;
+      for (int row = 0; row < kernel.box.rows(); ++row) {
+        const auto rows = spread_group(d, kernel.factors, kernel.cut, row);
+        for (int column = 0; column < kColumns; ++column) {
+          touched[static_cast<std::size_t>(column) * num_fields] |= kernel.bit;
+          counts.inside_support +=
+              add_to_group(d, kernel.factors, rows, column,
+                           group + static_cast<std::size_t>(column) * group_floats, block_floats);
+        }
+        group += row_floats;
+        touched += AreaBuffer::padded * num_fields;
       }
-      group += row_floats;
-      touched += AreaBuffer::padded * num_fields;
+      counts.carried_out +=
+          static_cast<std::uint64_t>(kernel.box.rows()) * kColumns * AreaBuffer::group_pixels;
     }
-    counts.carried_out +=
-        static_cast<std::uint64_t>(box.rows()) * kColumns * AreaBuffer::group_pixels;
   }
 }
 
@@ -280,12 +334,12 @@ HWY_NOINLINE void add_narrow_kernels(LaneTag d, const GatheredKernels& gathered,
 struct ReachedColumns {
   alignas(64) GroupBits of_row[AreaBuffer::groups];
 
-  HWY_INLINE void find(LaneTag d, const SweptKernel& kernel, float support_sq,
+  HWY_INLINE void find(LaneTag d, const SweptKernel& kernel, float kernel_disc_sq,
                        const GroupBox& box) {
     const hn::RebindToSigned<LaneTag> di;
     const hn::RebindToUnsigned<LaneTag> du;
     constexpr float size = AreaBuffer::group_size, middle = 0.5f * (size - 1);
-    const Lanes disc_sq = hn::Set(d, support_sq - kernel.dz * kernel.dz);
+    const Lanes disc_sq = hn::Set(d, kernel_disc_sq);
     const Lanes per_column = hn::Set(d, 1 / kernel.dx);
     const Lanes center = hn::Set(d, -kernel.x / kernel.dx);
     const Lanes end = hn::Set(d, static_cast<float>(box.columns()) * size - 1);
@@ -317,61 +371,55 @@ struct ReachedColumns {
 /// way.
 template <class C>
 HWY_NOINLINE void add_wide_kernels(LaneTag d, const GatheredKernels& gathered,
-                                   const BoxedKernels& list, const AreaPlane& plane,
-                                   const PlaneSamples& samples, EvaluationCounts& counts) {
+                                   std::span<const BoxedKernel> list, const PlaneSamples& samples,
+                                   EvaluationCounts& counts) {
+  const std::size_t row_floats = samples.buffer.row_floats();
   const std::size_t group_floats = samples.buffer.group_floats();
   const std::size_t num_fields = samples.buffer.num_fields();
-  const AreaBuffer::PlaneBits bit = samples.bit();
-  for (std::size_t i = 0; i < list.size; ++i) {
-    const GroupBox box = list.box_of(i);
-    if (!samples.any_live(box)) continue;
-    const std::size_t k = list.kernel[i];
-    const SweptKernel kernel = place_kernel(gathered, k, plane, box);
-    BoxFactors<AreaBuffer::groups, AreaBuffer::groups, C> factors;
-    factors.fill(d, kernel, box.columns(), box.rows());
-    ReachedColumns reached;
-    reached.find(d, kernel, gathered.support_sq[k], box);
-    const std::uint32_t field = gathered.field[k];
-    for (int row = 0; row < box.rows(); ++row) {
-      const GroupBits live = samples.live[std::size_t{box.row} + static_cast<std::size_t>(row)];
-      const GroupBits reached_live = reached.of_row[row] & live >> box.column;
-      if (reached_live == 0) continue;
-      // All between the first and the last, which is simpler to count than those that are live.
-      const int first = std::countr_zero(reached_live);
-      const int count = std::bit_width(reached_live) - first;
-      counts.carried_out += static_cast<std::uint64_t>(count) * AreaBuffer::group_pixels;
-      const auto rows = spread_group(d, factors, gathered.cut[k], row);
-      float* group = samples.at(box.row + row, box.column + first, field);
-      AreaBuffer::PlaneBits* touched =
-          samples.buffer.touched(box.row + row, box.column + first) + field;
-      for (int column = first; column < first + count; ++column) {
-        *touched |= bit;
-        counts.inside_support +=
-            add_to_group(d, factors, rows, column, group, samples.buffer.block_floats());
-        touched += num_fields;
-        group += group_floats;
+  KernelBatch<AreaBuffer::groups, C> batch;
+  while (!list.empty()) {
+    batch.fill(d, gathered, samples, list);
+    for (std::size_t i = 0; i < batch.count; ++i) {
+      const auto& kernel = batch.members[i];
+      const GroupBox box = kernel.box;
+      ReachedColumns reached;
+      reached.find(d, kernel.kernel, kernel.disc_sq, box);
+      for (int row = 0; row < box.rows(); ++row) {
+        const GroupBits reached_live =
+            reached.of_row[row] & samples.live.row(box.row + row) >> box.column;
+        if (reached_live == 0) continue;
+        // All between the first and the last, which is simpler to count than those that are live.
+        const int first = std::countr_zero(reached_live);
+        const int count = std::bit_width(reached_live) - first;
+        counts.carried_out += static_cast<std::uint64_t>(count) * AreaBuffer::group_pixels;
+        const auto rows = spread_group(d, kernel.factors, kernel.cut, row);
+        float* group = kernel.samples + static_cast<std::size_t>(row) * row_floats +
+                       static_cast<std::size_t>(first) * group_floats;
+        AreaBuffer::PlaneBits* touched =
+            kernel.touched +
+            static_cast<std::size_t>(row * AreaBuffer::padded + first) * num_fields;
+        for (int column = first; column < first + count; ++column) {
+          *touched |= kernel.bit;
+          counts.inside_support +=
+              add_to_group(d, kernel.factors, rows, column, group, samples.buffer.block_floats());
+          touched += num_fields;
+          group += group_floats;
+        }
       }
     }
   }
 }
 
-/// Adds the kernels that reach a plane to its samples.
+/// Adds the kernels that reach some planes, sorted, to their samples.
 template <class C>
-void sum_plane(const GatheredKernels& gathered, const PlaneKernels& kernels, const AreaPlane& plane,
-               const PlaneSamples& samples, EvaluationCounts& counts) {
+void sum_planes(const GatheredKernels& gathered, const PlaneKernels& kernels,
+                const PlaneSamples& samples, EvaluationCounts& counts) {
   const LaneTag d;
-  const auto add_narrow = [&]<int kColumns>() HWY_ATTR {
-    add_narrow_kernels<kColumns, C>(d, gathered, kernels.narrow[kColumns - 1], plane, samples,
-                                    counts);
-  };
-  static_assert(max_narrow_columns == 6);
-  add_narrow.template operator()<1>();
-  add_narrow.template operator()<2>();
-  add_narrow.template operator()<3>();
-  add_narrow.template operator()<4>();
-  add_narrow.template operator()<5>();
-  add_narrow.template operator()<6>();
-  add_wide_kernels<C>(d, gathered, kernels.wide, plane, samples, counts);
+  unroll<max_box_shape - 1>([&](auto i) HWY_ATTR {
+    constexpr int columns = static_cast<int>(i) + 1;
+    add_narrow_kernels<columns, C>(d, gathered, kernels.with_columns(columns), samples, counts);
+  });
+  add_wide_kernels<C>(d, gathered, kernels.with_columns(max_box_shape), samples, counts);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -9,10 +9,15 @@
 
 #include <hwy/highway.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
 
 #include "core/aligned.h"
 #include "field/gather-inl.h"
@@ -57,46 +62,81 @@ struct GroupBox {
   int rows() const { return last_row - row + 1; }
 };
 
-/// Boxes of so many columns of groups have a list of their own.
-inline constexpr int max_narrow_columns = 6;
+/// Shapes of boxes in groups of pixels: their columns and rows, each up to max_box_shape and all
+/// that are longer.
+inline constexpr int max_box_shape = 7;
+inline constexpr std::size_t num_box_shapes = max_box_shape * max_box_shape;
 
-/// Gathered kernels that reach a plane, with their boxes.
-struct BoxedKernels {
-  AlignedVector<std::uint32_t> kernel, box;
-  std::size_t size = 0;
+HWY_INLINE std::size_t shape_of(const GroupBox& box) {
+  const int columns = std::min(box.columns(), max_box_shape);
+  const int rows = std::min(box.rows(), max_box_shape);
+  return static_cast<std::size_t>((columns - 1) * max_box_shape + rows - 1);
+}
 
-  GroupBox box_of(std::size_t i) const { return std::bit_cast<GroupBox>(box[i]); }
-  /// Empties the list and makes room for `count`.
-  void start(std::size_t count) {
-    size = 0;
-    if (count + max_lanes <= kernel.size()) return;
-    kernel.resize(2 * (count + max_lanes));
-    box.resize(2 * (count + max_lanes));
-  }
-  void append(std::uint32_t one_kernel, std::uint32_t one_box) {
-    kernel[size] = one_kernel;
-    box[size++] = one_box;
-  }
+/// A gathered kernel that reaches one of the planes.
+struct BoxedKernel {
+  std::uint32_t kernel_and_plane;  ///< the plane in the lowest bits
+  GroupBox box;
+
+  static constexpr int plane_bits = 4;
+  static_assert(AreaBuffer::max_planes <= 1 << plane_bits);
+  std::size_t kernel() const { return kernel_and_plane >> plane_bits; }
+  std::size_t plane() const { return kernel_and_plane & ((1u << plane_bits) - 1); }
 };
 
-/// Kernels that reach a plane, by the size of their boxes; in each list in the order in which they
-/// were gathered.
-struct PlaneKernels {
-  BoxedKernels all;
-  std::array<BoxedKernels, max_narrow_columns> narrow;  ///< element c: of c + 1 columns
-  BoxedKernels wide;
+/// Kernels that reach some planes, first as they are found, then by the shapes of their boxes:
+/// loops over the groups of a box are of the same length for many kernels, and the processor
+/// guesses right when they end. A mistake costs it as much as two groups.
+class PlaneKernels {
+ public:
+  std::size_t size() const { return size_; }
+  void clear() { size_ = 0; }
 
-  /// Shares out `all`.
+  /// Makes room for `count` more and what whole vectors write behind them.
+  void reserve(std::size_t count) {
+    if (size_ + count + max_lanes <= kernel_.size()) return;
+    kernel_.resize(2 * (size_ + count + max_lanes));
+    box_.resize(kernel_.size());
+  }
+
+  /// Adds the lanes of `which`.
+  template <class DU>
+  HWY_INLINE void append(DU du, hn::Mask<DU> which, hn::Vec<DU> kernel_and_plane, hn::Vec<DU> box) {
+    hn::StoreU(hn::Compress(kernel_and_plane, which), du, kernel_.data() + size_);
+    hn::StoreU(hn::Compress(box, which), du, box_.data() + size_);
+    size_ += hn::CountTrue(du, which);
+  }
+
+  /// By shape, in each in the order in which they were appended.
   void sort() {
-    for (BoxedKernels& list : narrow) list.start(all.size);
-    wide.start(all.size);
-    for (std::size_t i = 0; i < all.size; ++i) {
-      const int columns = all.box_of(i).columns();
-      BoxedKernels& list =
-          columns <= max_narrow_columns ? narrow[static_cast<std::size_t>(columns - 1)] : wide;
-      list.append(all.kernel[i], all.box[i]);
+    sorted_.resize(std::max(sorted_.size(), size_));
+    std::array<std::uint32_t, num_box_shapes> next{};
+    for (std::size_t i = 0; i < size_; ++i) ++next[shape_of(box_of(i))];
+    std::uint32_t end = 0;
+    for (std::size_t shape = 0; shape < num_box_shapes; ++shape) {
+      begin_[shape] = end;
+      end += std::exchange(next[shape], end);
+    }
+    begin_[num_box_shapes] = end;
+    for (std::size_t i = 0; i < size_; ++i) {
+      sorted_[next[shape_of(box_of(i))]++] = {kernel_[i], box_of(i)};
     }
   }
+
+  /// Sorted ones whose boxes have so many columns, or at least as many if it is max_box_shape.
+  std::span<const BoxedKernel> with_columns(int columns) const {
+    const std::size_t end = begin_[static_cast<std::size_t>(columns * max_box_shape)];
+    const std::size_t begin = begin_[static_cast<std::size_t>((columns - 1) * max_box_shape)];
+    return {sorted_.data() + begin, end - begin};
+  }
+
+ private:
+  GroupBox box_of(std::size_t i) const { return std::bit_cast<GroupBox>(box_[i]); }
+
+  AlignedVector<std::uint32_t> kernel_, box_;
+  std::size_t size_ = 0;
+  std::vector<BoxedKernel> sorted_;
+  std::array<std::uint32_t, num_box_shapes + 1> begin_{};
 };
 
 /// First and last group of pixels, not yet rounded down, of those along one axis that lie within
@@ -115,13 +155,14 @@ HWY_INLINE GroupSpan<Lanes> group_span(LaneTag d, Lanes center, Lanes half) {
   return {hn::Mul(first, per_group), hn::Mul(last, per_group), hn::Le(first, last)};
 }
 
-/// Finds the kernels that reach samples of the area on `plane`.
-HWY_NOINLINE void find_boxes(const GatheredKernels& gathered, const AreaPlane& plane,
+/// Appends the kernels that reach samples of the area on `plane`, the `number`-th.
+HWY_NOINLINE void find_boxes(const GatheredKernels& gathered, const AreaPlane& plane, int number,
                              PlaneKernels& out) {
   const LaneTag d;
   const hn::RebindToSigned<LaneTag> di;
   const hn::RebindToUnsigned<LaneTag> du;
-  out.all.start(gathered.size);
+  assert(gathered.size >> (32 - BoxedKernel::plane_bits) == 0);
+  out.reserve(gathered.size);
   // Rounding of the square root and of places, in pixels.
   const Lanes slack = hn::Set(d, 1e-3f), stretch = hn::Set(d, 1.0005f);
   const Lanes per_column = hn::Set(d, 1 / plane.dx), per_row = hn::Set(d, 1 / plane.dy);
@@ -144,12 +185,10 @@ HWY_NOINLINE void find_boxes(const GatheredKernels& gathered, const AreaPlane& p
     const auto box = hn::Or(hn::Or(column, hn::ShiftLeft<8>(row)),
                             hn::Or(hn::ShiftLeft<16>(last_column), hn::ShiftLeft<24>(last_row)));
     const auto kernel = numbers_from(static_cast<std::uint32_t>(i));
-    const auto which = hn::RebindMask(du, any);
-    hn::StoreU(hn::Compress(kernel, which), du, out.all.kernel.data() + out.all.size);
-    hn::StoreU(hn::Compress(box, which), du, out.all.box.data() + out.all.size);
-    out.all.size += hn::CountTrue(d, any);
+    const auto kernel_and_plane = hn::Or(hn::ShiftLeft<BoxedKernel::plane_bits>(kernel),
+                                         hn::Set(du, static_cast<std::uint32_t>(number)));
+    out.append(du, hn::RebindMask(du, any), kernel_and_plane, box);
   }
-  out.sort();
 }
 
 }  // namespace HWY_NAMESPACE

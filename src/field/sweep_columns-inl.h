@@ -277,7 +277,7 @@ HWY_NOINLINE void add_thin_kernels(const GatheredKernels& gathered, const ThinKe
     const GroupBits groups = (2u << box.last_column / AreaBuffer::group_size) -
                              (1u << box.column / AreaBuffer::group_size);
     const auto row_at = [](int row) { return static_cast<std::size_t>(row); };
-    if (((live[row_at(first_row)] | live[row_at(last_row)]) & groups) == 0) continue;
+    if (((live.row(row_at(first_row)) | live.row(row_at(last_row))) & groups) == 0) continue;
     for (int row = first_row; row <= last_row; ++row) buffer.touched(row) |= groups;
     const std::size_t k = list.kernel[n];
     const DepthLanes cut = hn::Set(d, gathered.cut[k]);
@@ -310,61 +310,84 @@ void sum_columns(const GatheredKernels& gathered, const ThinLists& lists, const 
   });
 }
 
-/// Four vectors with planes in their lanes become four with, in each 128 bits, four pixels: vector
-/// j then has planes j, 4 + j, 8 + j, ...
-HWY_INLINE void transpose_fours(LaneTag d, Lanes (&v)[4]) {
+/// In each 128 bits four vectors become their transpose: vector j then has the j-th numbers.
+HWY_INLINE void transpose_fours(LaneTag d, Lanes& v0, Lanes& v1, Lanes& v2, Lanes& v3) {
   const hn::RepartitionToWide<LaneTag> dw;
   const auto pairs = [&](Lanes a, Lanes b)
                          HWY_ATTR { return hn::BitCast(dw, hn::InterleaveLower(d, a, b)); };
   const auto upper_pairs = [&](Lanes a, Lanes b)
                                HWY_ATTR { return hn::BitCast(dw, hn::InterleaveUpper(d, a, b)); };
-  const auto a = pairs(v[0], v[1]), b = pairs(v[2], v[3]);
-  const auto c = upper_pairs(v[0], v[1]), e = upper_pairs(v[2], v[3]);
-  v[0] = hn::BitCast(d, hn::InterleaveLower(dw, a, b));
-  v[1] = hn::BitCast(d, hn::InterleaveUpper(dw, a, b));
-  v[2] = hn::BitCast(d, hn::InterleaveLower(dw, c, e));
-  v[3] = hn::BitCast(d, hn::InterleaveUpper(dw, c, e));
+  const auto a = pairs(v0, v1), b = pairs(v2, v3);
+  const auto c = upper_pairs(v0, v1), e = upper_pairs(v2, v3);
+  v0 = hn::BitCast(d, hn::InterleaveLower(dw, a, b));
+  v1 = hn::BitCast(d, hn::InterleaveUpper(dw, a, b));
+  v2 = hn::BitCast(d, hn::InterleaveLower(dw, c, e));
+  v3 = hn::BitCast(d, hn::InterleaveUpper(dw, c, e));
+}
+
+/// Pixels of a block with planes in their lanes become planes with pixels in theirs: vector p of
+/// num_lanes pixels, row by row, then is plane p.
+HWY_INLINE void transpose_block(LaneTag d, Lanes (&v)[num_lanes]) {
+  for (int y = 0; y < num_lanes; y += 4) {
+    transpose_fours(d, v[y], v[y + 1], v[y + 2], v[y + 3]);
+  }
+  // Vector 4 y + j now has, in its 128 bits q, plane 4 q + j of the pixels of row y.
+#if HWY_TARGET <= HWY_AVX3
+  static_assert(num_lanes == 16);
+  constexpr int even = _MM_SHUFFLE(2, 0, 2, 0), odd = _MM_SHUFFLE(3, 1, 3, 1);
+  for (int j = 0; j < 4; ++j) {
+    const Lanes low = hn::ConcatLowerLower(d, v[4 + j], v[j]);
+    const Lanes high = hn::ConcatUpperUpper(d, v[4 + j], v[j]);
+    const Lanes low2 = hn::ConcatLowerLower(d, v[12 + j], v[8 + j]);
+    const Lanes high2 = hn::ConcatUpperUpper(d, v[12 + j], v[8 + j]);
+    v[j] = Lanes{_mm512_shuffle_f32x4(low.raw, low2.raw, even)};
+    v[4 + j] = Lanes{_mm512_shuffle_f32x4(low.raw, low2.raw, odd)};
+    v[8 + j] = Lanes{_mm512_shuffle_f32x4(high.raw, high2.raw, even)};
+    v[12 + j] = Lanes{_mm512_shuffle_f32x4(high.raw, high2.raw, odd)};
+  }
+#elif HWY_TARGET <= HWY_AVX2
+  static_assert(num_lanes == 8);
+  for (int j = 0; j < 4; ++j) {
+    const Lanes low = hn::ConcatLowerLower(d, v[4 + j], v[j]);
+    v[4 + j] = hn::ConcatUpperUpper(d, v[4 + j], v[j]);
+    v[j] = low;
+  }
+#endif
 }
 
 /// Moves what a group of pixels holds in `columns`, which is zero there afterwards, to `num_planes`
-/// planes of the area.
+/// planes of the area, where nothing else may be yet. Planes without any kernel stay untouched.
 HWY_NOINLINE void move_group(ColumnBuffer& columns, int row, int column, int num_planes,
                              const SampleLayout& layout, AreaBuffer& area) {
   constexpr int size = AreaBuffer::group_size;
   const LaneTag d;
-  const hn::FixedTag<float, size> four;
   const int num_channels = layout.num_fields * layout.channels();
-  float* const group = area.at(row, column);
-  for (int channel = 0; channel < num_channels; ++channel) {
-    for (int y = 0; y < size; ++y) {
-      // The pixels' part of a plane's block: rows of a group lie in blocks of block_rows.
-      float* const out = group + static_cast<std::size_t>(y / block_rows) * area.block_floats() +
-                         static_cast<std::size_t>(channel * num_lanes + y % block_rows * size);
-      for (int v = 0; v < ColumnBuffer::planes; v += num_lanes) {
-        Lanes planes[size];
-        for (int x = 0; x < size; ++x) {
+  AreaBuffer::PlaneBits* const touched = area.touched(row, column);
+  for (int block = 0; block < group_blocks; ++block) {
+    float* const out = area.at(row, column) + static_cast<std::size_t>(block) * area.block_floats();
+    for (int channel = 0; channel < num_channels; ++channel) {
+      for (int plane = 0; plane < num_planes; plane += num_lanes) {
+        Lanes v[num_lanes];
+        for (int pixel = 0; pixel < num_lanes; ++pixel) {
+          const int y = size * row + block * block_rows + pixel / size;
           float* const in =
-              columns.at(size * row + y, size * column + x) + channel * ColumnBuffer::planes + v;
-          planes[x] = hn::Load(d, in);
+              columns.at(y, size * column + pixel % size) + channel * ColumnBuffer::planes + plane;
+          v[pixel] = hn::Load(d, in);
           hn::Store(hn::Zero(d), d, in);
         }
-        transpose_fours(d, planes);
-        for (int j = 0; j < size; ++j) {
-          alignas(64) float pixels[num_lanes];
-          hn::Store(planes[j], d, pixels);
-          for (int q = 0; q < num_lanes; q += size) {
-            const int k = v + q + j;
-            if (k >= num_planes) continue;
-            float* const at = out + static_cast<std::size_t>(k) * area.plane_floats();
-            hn::Store(hn::Add(hn::Load(four, at), hn::Load(four, pixels + q)), four, at);
-          }
+        transpose_block(d, v);
+        float* at =
+            out + static_cast<std::size_t>(plane) * area.plane_floats() + channel * num_lanes;
+        AreaBuffer::PlaneBits any = 0;
+        for (int k = 0; k < std::min(num_lanes, num_planes - plane); ++k) {
+          hn::Store(v[k], d, at);
+          at += area.plane_floats();
+          const bool is_zero = hn::AllTrue(d, hn::Eq(v[k], hn::Zero(d)));
+          any |= (is_zero ? 0u : 1u) << k;
         }
+        touched[channel / layout.channels()] |= any << plane;
       }
     }
-  }
-  AreaBuffer::PlaneBits* const touched = area.touched(row, column);
-  for (std::size_t f = 0; f < area.num_fields(); ++f) {
-    touched[f] |= (AreaBuffer::PlaneBits{1} << num_planes) - 1;
   }
 }
 

@@ -268,95 +268,103 @@ HWY_NOINLINE void add_visible(LaneTag d, const BlockShading& shading, const Slab
   }
 }
 
-/// Composites the samples of `slab`, at most max_slab, into the rays' colours. Bit i of visible[f]:
-/// field f may be seen at sample i. A ray that reaches the termination opacity ends. Hot: nothing
-/// is checked.
-template <bool kGradients>
-HWY_INLINE void integrate_slab(const std::vector<Classifier>& classifiers,
-                               const ShadingConstants& constants, const Slab& slab,
-                               const SampleLayout& layout, const SlabSamples& samples,
-                               const std::uint64_t* visible, RayState& rays) {
-  const LaneTag d;
-  const Lanes slab_first = hn::Set(d, static_cast<float>(slab.first));
-  BlockRays block;
-  block.first = hn::Sub(hn::Load(d, rays.first), slab_first);
-  block.last = hn::Sub(hn::Load(d, rays.last), slab_first);
-  block.alive = hn::And(hn::Le(block.first, hn::Set(d, static_cast<float>(slab.count - 1))),
-                        hn::Ge(block.last, hn::Zero(d)));
-  block.color[0] = hn::Load(d, rays.r);
-  block.color[1] = hn::Load(d, rays.g);
-  block.color[2] = hn::Load(d, rays.b);
-  block.transparency = hn::Load(d, rays.transparency);
-  block.highlight = hn::Zero(d);
-  const BlockShading shading(d, classifiers, constants, layout, rays);
-  const bool zero_shows =
-      std::any_of(classifiers.begin(), classifiers.end(),
-                  [](const Classifier& c) { return c.visibility.shows_zero(); });
-  const bool plain = is_plain(classifiers, constants);
-  const auto add = [&]<TableKind kKind>() HWY_ATTR {
-    const auto add_them =
-        plain ? &add_visible<kGradients, true, kKind> : &add_visible<kGradients, false, kKind>;
-    add_them(d, shading, samples, zero_shows, visible, block);
-  };
-  switch (kind_of(classifiers)) {
-    case TableKind::one_segment:
-      add.template operator()<TableKind::one_segment>();
-      break;
-    case TableKind::one_vector:
-      add.template operator()<TableKind::one_vector>();
-      break;
-    case TableKind::two_vectors:
-      if constexpr (HWY_TARGET <= HWY_AVX3) add.template operator()<TableKind::two_vectors>();
-      break;
-    case TableKind::many:
-      add.template operator()<TableKind::many>();
-      break;
-  }
-  if (block.any_ended) {
-    rays.end = slab.first + static_cast<int>(hn::GetLane(hn::MaxOfLanes(d, block.last)));
-  }
-  if constexpr (kGradients) {
-    const Lanes specular = hn::Set(d, constants.specular);
-    for (Lanes& each : block.color) each = hn::MulAdd(specular, block.highlight, each);
-  }
-  hn::Store(block.color[0], d, rays.r);
-  hn::Store(block.color[1], d, rays.g);
-  hn::Store(block.color[2], d, rays.b);
-  hn::Store(block.transparency, d, rays.transparency);
-  hn::Store(hn::Add(block.last, slab_first), d, rays.last);
-}
+/// Pass 2 with a frame's transfer functions and lighting.
+class Integrator {
+ public:
+  Integrator(const std::vector<Classifier>& classifiers, const ShadingConstants& constants,
+             const SampleLayout& layout)
+      : classifiers_(classifiers),
+        constants_(constants),
+        layout_(layout),
+        zero_shows_(std::any_of(classifiers.begin(), classifiers.end(),
+                                [](const Classifier& c) { return c.visibility.shows_zero(); })),
+        add_visible_(layout.gradients ? choose<true>() : choose<false>()) {}
 
-inline void integrate(const std::vector<Classifier>& classifiers, const ShadingConstants& shading,
-                      const Slab& slab, const SampleLayout& layout, const SlabSamples& samples,
-                      const std::uint64_t* visible, RayState& rays) {
-  if (layout.gradients) {
-    integrate_slab<true>(classifiers, shading, slab, layout, samples, visible, rays);
-  } else {
-    integrate_slab<false>(classifiers, shading, slab, layout, samples, visible, rays);
-  }
-}
+  /// Something may be seen where there is no kernel.
+  bool zero_shows() const { return zero_shows_; }
 
-/// The same for any number of samples of which it is not known yet which may be seen.
-inline void integrate_buffer(const std::vector<Classifier>& classifiers,
-                             const ShadingConstants& shading, const Slab& slab,
-                             SampleBuffer& buffer, RayState& rays) {
-  const LaneTag d;
-  for (int begin = 0; begin < slab.count && slab.first + begin <= rays.end; begin += max_slab) {
-    const int count = std::min(slab.count - begin, max_slab);
-    std::uint64_t visible[max_fields] = {};
-    for (std::size_t f = 0; f < classifiers.size(); ++f) {
-      for (int i = 0; i < count; ++i) {
-        const Lanes values = hn::Load(d, buffer.at(begin + i, static_cast<int>(f)));
-        visible[f] |= std::uint64_t{may_be_seen(d, values, classifiers[f].visibility)} << i;
-      }
+  /// Composites the samples of `slab`, at most max_slab, into the rays' colours. Bit i of
+  /// visible[f]: field f may be seen at sample i. A ray that reaches the termination opacity ends.
+  /// Hot: nothing is checked.
+  void run(const Slab& slab, const SlabSamples& samples, const std::uint64_t* visible,
+           RayState& rays) const {
+    const LaneTag d;
+    const Lanes slab_first = hn::Set(d, static_cast<float>(slab.first));
+    BlockRays block;
+    block.first = hn::Sub(hn::Load(d, rays.first), slab_first);
+    block.last = hn::Sub(hn::Load(d, rays.last), slab_first);
+    block.alive = hn::And(hn::Le(block.first, hn::Set(d, static_cast<float>(slab.count - 1))),
+                          hn::Ge(block.last, hn::Zero(d)));
+    block.color[0] = hn::Load(d, rays.r);
+    block.color[1] = hn::Load(d, rays.g);
+    block.color[2] = hn::Load(d, rays.b);
+    block.transparency = hn::Load(d, rays.transparency);
+    block.highlight = hn::Zero(d);
+    const BlockShading shading(d, classifiers_, constants_, layout_, rays);
+    add_visible_(d, shading, samples, zero_shows_, visible, block);
+    if (HWY_UNLIKELY(block.any_ended)) {
+      rays.end = slab.first + static_cast<int>(hn::GetLane(hn::MaxOfLanes(d, block.last)));
+      hn::Store(hn::Add(block.last, slab_first), d, rays.last);
     }
-    const SampleLayout& layout = buffer.layout();
-    integrate(classifiers, shading, {slab.first + begin, count}, layout,
-              {buffer.at(begin, 0), layout.floats_per_sample(),
-               static_cast<std::size_t>(layout.channels() * layout.lanes)},
-              visible, rays);
+    const Lanes specular = hn::Set(d, constants_.specular);
+    for (Lanes& each : block.color) each = hn::MulAdd(specular, block.highlight, each);
+    hn::Store(block.color[0], d, rays.r);
+    hn::Store(block.color[1], d, rays.g);
+    hn::Store(block.color[2], d, rays.b);
+    hn::Store(block.transparency, d, rays.transparency);
   }
-}
+
+  /// The same for any number of samples of which it is not known yet which may be seen.
+  void run(const Slab& slab, SampleBuffer& buffer, RayState& rays) const {
+    const LaneTag d;
+    for (int begin = 0; begin < slab.count && slab.first + begin <= rays.end; begin += max_slab) {
+      const int count = std::min(slab.count - begin, max_slab);
+      std::uint64_t visible[max_fields] = {};
+      for (std::size_t f = 0; f < classifiers_.size(); ++f) {
+        for (int i = 0; i < count; ++i) {
+          const Lanes values = hn::Load(d, buffer.at(begin + i, static_cast<int>(f)));
+          visible[f] |= std::uint64_t{may_be_seen(d, values, classifiers_[f].visibility)} << i;
+        }
+      }
+      run({slab.first + begin, count},
+          {buffer.at(begin, 0), layout_.floats_per_sample(),
+           static_cast<std::size_t>(layout_.channels() * layout_.lanes)},
+          visible, rays);
+    }
+  }
+
+ private:
+  using AddVisible = void (*)(LaneTag, const BlockShading&, const SlabSamples&, bool,
+                              const std::uint64_t*, BlockRays&);
+
+  template <bool kGradients>
+  AddVisible choose() const {
+    const bool plain = is_plain(classifiers_, constants_);
+    const auto of_kind = [&]<TableKind kKind>() -> AddVisible {
+      return plain ? &add_visible<kGradients, true, kKind> : &add_visible<kGradients, false, kKind>;
+    };
+    switch (kind_of(classifiers_)) {
+      case TableKind::one_segment:
+        return of_kind.template operator()<TableKind::one_segment>();
+      case TableKind::one_vector:
+        return of_kind.template operator()<TableKind::one_vector>();
+      case TableKind::two_vectors:
+        if constexpr (HWY_TARGET <= HWY_AVX3) {
+          return of_kind.template operator()<TableKind::two_vectors>();
+        }
+        break;
+      case TableKind::many:
+        break;
+    }
+    return of_kind.template operator()<TableKind::many>();
+  }
+
+  const std::vector<Classifier>& classifiers_;
+  const ShadingConstants& constants_;
+  const SampleLayout layout_;
+  const bool zero_shows_;
+  const AddVisible add_visible_;
+};
 
 }  // namespace HWY_NAMESPACE
 }  // namespace motes

@@ -50,6 +50,9 @@ constexpr std::size_t first_block(int row, int column) {
 /// Bytes of samples that are worked on together: all planes of a slab for a few fields.
 inline constexpr std::size_t batch_bytes = 4096 << 10;
 
+/// Kernels on planes that are added in one go: planes are taken together until there are so many.
+inline constexpr std::size_t kernels_at_once = 1024;
+
 /// Planes that are sampled before they are integrated.
 inline int planes_at_once(const FrameContext& context, const SampleLayout& layout) {
   const std::size_t plane_bytes =
@@ -70,9 +73,7 @@ class AreaSweep {
         layout_(make_layout(context)),
         field_floats_(static_cast<std::size_t>(layout_.channels() * layout_.lanes)),
         planes_at_once_(planes_at_once(context, layout_)),
-        zero_is_transparent_(
-            std::all_of(context.classifiers.begin(), context.classifiers.end(),
-                        [](const Classifier& c) { return !c.visibility.shows_zero(); })),
+        integrator_(context.classifiers, context.shading, layout_),
         memory_(memory),
         counts_(counts),
         clock_(counts.stages) {
@@ -126,8 +127,8 @@ class AreaSweep {
 
   /// Finds the groups that have rays under way on some of the planes; true if any has.
   bool find_live(const Slab& slab) {
+    std::array<GroupBits, AreaBuffer::padded> rows{};
     GroupBits any = 0;
-    live_.fill(0);
     for (int row = 0; row < AreaBuffer::groups; ++row) {
       GroupBits bits = 0;
       for (int column = 0; column < AreaBuffer::groups; ++column) {
@@ -137,9 +138,10 @@ class AreaSweep {
         }
         bits |= static_cast<GroupBits>(live) << column;
       }
-      live_[static_cast<std::size_t>(row)] = bits;
+      rows[static_cast<std::size_t>(row)] = bits;
       any |= bits;
     }
+    live_.set(rows);
     return any != 0;
   }
 
@@ -149,7 +151,7 @@ class AreaSweep {
     gather_kernels(*context_.kernels, constants_, frame,
                    make_frustum(bounds_, frame, context_.view), memory_.gathered);
     clock_.lap(Stage::traverse);
-    if (memory_.gathered.size == 0 && zero_is_transparent_) return;
+    if (memory_.gathered.size == 0 && !integrator_.zero_shows()) return;
     memory_.buffer.reserve(layout_, planes_at_once_);
     for (int begin = 0; begin < slab.count; begin += planes_at_once_) {
       const Slab batch{slab.first + begin, std::min(planes_at_once_, slab.count - begin)};
@@ -183,17 +185,22 @@ class AreaSweep {
       memory_.columns.reserve(layout_);
       sum_columns<C>(memory_.gathered, memory_.thin, planes, live_, layout_, memory_.columns,
                      evaluations);
-      clock_.lap(Stage::sums);
+      move_columns(count);
     }
-    for (int k = 0; k < count && others != 0; ++k) {
-      const AreaPlane plane = place_plane(bounds_, frame, first + k);
-      find_boxes(memory_.gathered, plane, memory_.plane_kernels);
+    std::array<AreaPlane, AreaBuffer::max_planes> each_plane;
+    for (int k = 0; k < count && others != 0;) {
+      memory_.plane_kernels.clear();
+      for (; k < count && memory_.plane_kernels.size() < kernels_at_once; ++k) {
+        AreaPlane& plane = each_plane[static_cast<std::size_t>(k)];
+        plane = place_plane(bounds_, frame, first + k);
+        find_boxes(memory_.gathered, plane, k, memory_.plane_kernels);
+      }
+      memory_.plane_kernels.sort();
       clock_.lap(Stage::cull);
-      sum_plane<C>(memory_.gathered, memory_.plane_kernels, plane,
-                   {memory_.buffer, k, field_floats_, live_}, evaluations);
+      sum_planes<C>(memory_.gathered, memory_.plane_kernels,
+                    {each_plane.data(), memory_.buffer, field_floats_, live_}, evaluations);
       clock_.lap(Stage::sums);
     }
-    if (any_thin) move_columns(count);
     counts_.kernel_evaluations += evaluations.carried_out;
     counts_.evaluations_inside += evaluations.inside_support;
   }
@@ -213,7 +220,7 @@ class AreaSweep {
   void integrate_area(const Slab& batch) {
     for (int row = 0; row < AreaBuffer::padded; ++row) {
       for (int column = 0; column < AreaBuffer::padded; ++column) {
-        const bool live = (live_[static_cast<std::size_t>(row)] >> column & 1) != 0;
+        const bool live = (live_.row(row) >> column & 1) != 0;
         if (live && find_visible(row, column, batch.count)) integrate_group(row, column, batch);
         clear(row, column);
       }
@@ -226,22 +233,22 @@ class AreaSweep {
     const LaneTag d;
     const std::size_t num_fields = context_.classifiers.size();
     const std::size_t stride = memory_.buffer.plane_floats();
-    const auto all = static_cast<AreaBuffer::PlaneBits>((std::uint64_t{1} << num_planes) - 1);
     const AreaBuffer::PlaneBits* const touched = memory_.buffer.touched(row, column);
     std::uint64_t any = 0;
     for (std::size_t f = 0; f < num_fields; ++f) {
       const Visibility visibility = context_.classifiers[f].visibility;
-      const AreaBuffer::PlaneBits planes = visibility.shows_zero() ? all : touched[f];
+      const std::uint64_t planes = visibility.shows_zero() ? ~std::uint64_t{0} : touched[f];
       const float* samples = memory_.buffer.at(row, column) + f * field_floats_;
       for (std::size_t v = 0; v < group_blocks; ++v, samples += memory_.buffer.block_floats()) {
         std::uint64_t visible = 0;
-        for (AreaBuffer::PlaneBits left = planes; left != 0; left &= left - 1) {
-          const auto k = static_cast<std::size_t>(std::countr_zero(left));
-          const bool seen = may_be_seen(d, hn::Load(d, samples + k * stride), visibility);
-          visible |= std::uint64_t{seen} << k;
+        if (planes != 0) {
+          for (int k = 0; k < num_planes; ++k) {
+            const Lanes values = hn::Load(d, samples + static_cast<std::size_t>(k) * stride);
+            visible |= std::uint64_t{may_be_seen(d, values, visibility)} << k;
+          }
         }
-        memory_.visible[v * num_fields + f] = visible;
-        any |= visible;
+        memory_.visible[v * num_fields + f] = visible & planes;
+        any |= visible & planes;
       }
     }
     return any != 0;
@@ -255,9 +262,8 @@ class AreaSweep {
     for (int v = 0; v < group_blocks; ++v, ++b, visible += num_fields) {
       if (std::any_of(visible, visible + num_fields,
                       [](std::uint64_t bits) { return bits != 0; })) {
-        integrate(context_.classifiers, context_.shading, batch, layout_,
-                  {samples, memory_.buffer.plane_floats(), field_floats_}, visible,
-                  memory_.blocks[b]);
+        integrator_.run(batch, {samples, memory_.buffer.plane_floats(), field_floats_}, visible,
+                        memory_.blocks[b]);
         memory_.end[b] = memory_.blocks[b].end;
       }
       samples += memory_.buffer.block_floats();
@@ -268,18 +274,20 @@ class AreaSweep {
     const LaneTag d;
     AreaBuffer& buffer = memory_.buffer;
     const std::size_t stride = buffer.plane_floats(), block_floats = buffer.block_floats();
+    const std::size_t field_floats = field_floats_;
     AreaBuffer::PlaneBits* const touched = buffer.touched(row, column);
     for (std::size_t f = 0; f < buffer.num_fields(); ++f) {
-      float* const samples = buffer.at(row, column) + f * field_floats_;
-      for (; touched[f] != 0; touched[f] &= touched[f] - 1) {
-        float* block = samples + static_cast<std::size_t>(std::countr_zero(touched[f])) * stride;
+      float* const samples = buffer.at(row, column) + f * field_floats;
+      for (AreaBuffer::PlaneBits left = touched[f]; left != 0; left &= left - 1) {
+        float* block = samples + static_cast<std::size_t>(std::countr_zero(left)) * stride;
         for (int v = 0; v < group_blocks; ++v, block += block_floats) {
-          for (std::size_t i = 0; i < field_floats_; i += num_lanes) {
+          for (std::size_t i = 0; i < field_floats; i += num_lanes) {
             hn::Store(hn::Zero(d), d, block + i);
             __asm__ volatile("");  // or it becomes a call of memset(), which takes longer
           }
         }
       }
+      touched[f] = 0;
     }
   }
 
@@ -290,11 +298,11 @@ class AreaSweep {
   const SampleLayout layout_;
   const std::size_t field_floats_;  ///< of a block
   const int planes_at_once_;        ///< in the buffer
-  const bool zero_is_transparent_;  ///< samples that no kernel reaches show nothing
+  const Integrator integrator_;
   SweepMemory& memory_;
   TileCounts& counts_;
   StageClock clock_;
-  LiveGroups live_{};                 ///< groups with rays under way
+  LiveGroups live_;                   ///< groups with rays under way
   SampleIndex begin_ = 0, end_ = -1;  ///< of all rays at first
 };
 

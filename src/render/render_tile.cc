@@ -59,15 +59,15 @@ std::uint64_t sample_field(const FrameContext& context, const SamplingConstants&
 /// The paper's multi-pass algorithm (section 4.2): slab by slab, sampling then integrating, until
 /// all rays of the packet have ended. Returns kernel evaluations.
 std::uint64_t render_packet(const FrameContext& context, const SamplingConstants& constants,
-                            const RayPacket& packet, SampleBuffer& buffer, RayState& rays,
-                            StageClock& clock) {
+                            const Integrator& integrator, const RayPacket& packet,
+                            SampleBuffer& buffer, RayState& rays, StageClock& clock) {
   std::uint64_t evaluations = 0;
   for (SampleIndex k = rays.begin; k <= rays.end; k += context.samples_per_pass) {
     const Slab slab{k, std::min(rays.end - k + 1, context.samples_per_pass)};
     buffer.reserve(slab.count);
     evaluations += sample_field(context, constants, packet, slab, buffer);
     clock.lap(Stage::sums);
-    integrate_buffer(context.classifiers, context.shading, slab, buffer, rays);
+    integrator.run(slab, buffer, rays);
     clear_touched(buffer);
     clock.lap(Stage::integrate);
   }
@@ -79,6 +79,7 @@ TileCounts render_packets(const FrameContext& context, const Tile& tile, Framebu
   const int lanes = static_cast<int>(hn::Lanes(LaneTag()));
   const int packet_width = lanes >= 8 ? 4 : 2, packet_height = lanes / packet_width;
   const SamplingConstants constants = make_constants(*context.kernels);
+  const Integrator integrator(context.classifiers, context.shading, make_layout(context));
   SampleBuffer buffer(make_layout(context), std::min(context.samples_per_pass, 64));
   TileCounts counts;
   StageClock clock(counts.stages);
@@ -88,7 +89,8 @@ TileCounts render_packets(const FrameContext& context, const Tile& tile, Framebu
       RayState rays;
       start_rays(context, px, py, packet_width, packet_height, rays);
       clock.lap(Stage::setup);
-      counts.kernel_evaluations += render_packet(context, constants, packet, buffer, rays, clock);
+      counts.kernel_evaluations +=
+          render_packet(context, constants, integrator, packet, buffer, rays, clock);
       counts.samples += count_samples(rays);
       store_pixels(rays, px, py, packet_width, image);
     }
