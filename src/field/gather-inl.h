@@ -7,6 +7,7 @@
 #define MOTES_FIELD_GATHER_INL_H_
 #endif
 
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 #include <cmath>
@@ -23,8 +24,8 @@ namespace HWY_NAMESPACE {
 
 /// Kernels that may reach some rays in a slab: placed in the slab's frame, in the tree's order.
 struct GatheredKernels {
-  AlignedVector<float> x, y, z, radius;
-  AlignedVector<std::uint32_t> index;  ///< of the kernel in its set
+  AlignedVector<float> x, y, z, radius, weight;
+  AlignedVector<std::uint32_t> field;
   std::size_t size = 0;
   // What finish_kernels() adds.
   AlignedVector<float> support_sq;
@@ -32,37 +33,42 @@ struct GatheredKernels {
   AlignedVector<float> exponent_scale;    ///< -log2(e) / (2 radius^2)
   AlignedVector<float> peak;  ///< kappa * weight, of a normalised field over the kernel's integral
   AlignedVector<float> cut;   ///< a kernel is zero where its absolute value would be less
-  AlignedVector<std::uint32_t> field;
 
   /// Makes room for `count` more and for what a vector writes beyond them.
   void reserve(std::size_t count) {
     if (size + count + max_lanes <= x.size()) return;
     const std::size_t room = 2 * (size + count + max_lanes);
-    for (auto* array :
-         {&x, &y, &z, &radius, &support_sq, &plane_support_sq, &exponent_scale, &peak, &cut}) {
+    for (auto* array : {&x, &y, &z, &radius, &weight, &support_sq, &plane_support_sq,
+                        &exponent_scale, &peak, &cut}) {
       array->resize(room);
     }
-    for (auto* array : {&index, &field}) array->resize(room);
+    field.resize(room);
   }
 };
 
 /// Works out what the sweep needs of the kernels beside their places.
-inline void finish_kernels(const KernelSet& kernels, const SamplingConstants& constants,
-                           GatheredKernels& out) {
-  for (std::size_t i = 0; i < out.size; ++i) {
-    const std::size_t at = out.index[i];
-    const std::size_t f = kernels.field.empty() ? 0 : kernels.field[at];
-    const FieldConstants& field = constants.fields[f];
-    const float radius = out.radius[i];
-    const float support = field.support_factor * radius;
-    out.support_sq[i] = support * support;
-    out.exponent_scale[i] = -0.5f * std::numbers::log2e_v<float> / (radius * radius);
-    out.peak[i] = field.peak_factor * kernels.weight[at];
-    out.cut[i] = field.support_value * std::abs(out.peak[i]);
-    out.field[i] = static_cast<std::uint32_t>(f);
+inline void finish_kernels(const SamplingConstants& constants, GatheredKernels& out) {
+  const LaneTag d;
+  const hn::RebindToSigned<LaneTag> di;
+  static_assert(sizeof(FieldConstants) == 4 * sizeof(float));
+  for (std::size_t i = 0; i < out.size; i += hn::Lanes(d)) {
+    const auto field = hn::BitCast(di, hn::Load(hn::RebindToUnsigned<LaneTag>(), &out.field[i]));
+    const auto of_field = [&](const float& first_field) HWY_ATTR {
+      return hn::GatherIndex(d, &first_field, hn::ShiftLeft<2>(field));
+    };
+    const FieldConstants& first = constants.fields[0];
+    const Lanes radius = hn::Load(d, &out.radius[i]);
+    const Lanes support = hn::Mul(of_field(first.support_factor), radius);
+    const Lanes peak = hn::Mul(of_field(first.peak_factor), hn::Load(d, &out.weight[i]));
+    const Lanes exponent_scale =
+        hn::Div(hn::Set(d, -0.5f * std::numbers::log2e_v<float>), hn::Mul(radius, radius));
+    hn::Store(hn::Mul(support, support), d, &out.support_sq[i]);
+    hn::Store(exponent_scale, d, &out.exponent_scale[i]);
+    hn::Store(peak, d, &out.peak[i]);
+    hn::Store(hn::Mul(of_field(first.support_value), hn::Abs(peak)), d, &out.cut[i]);
   }
   // Fills the last vector with kernels that reach nothing.
-  for (std::size_t i = out.size; i < out.size + max_lanes; ++i) out.support_sq[i] = -1;
+  std::fill_n(out.support_sq.begin() + static_cast<std::ptrdiff_t>(out.size), max_lanes, -1.0f);
 }
 
 /// Finds the kernels that may reach `frustum`.
@@ -72,22 +78,43 @@ HWY_NOINLINE void gather_kernels(const KernelSet& kernels, const SamplingConstan
   const LaneTag d;
   const hn::RebindToUnsigned<LaneTag> du;
   out.size = 0;
-  const auto visit = [&](std::size_t leaf) HWY_ATTR {
+  const auto add_leaf = [&](std::size_t leaf) HWY_ATTR {
     out.reserve(Bvh::leaf_size);
     for (std::size_t i = 0; i < Bvh::leaf_size; i += hn::Lanes(d)) {
       const std::size_t at = leaf * Bvh::leaf_size + i;
       const Centers<Lanes> centers = place_centers(d, kernels, at, frame);
       const Lanes radius = hn::Load(d, kernels.radius.from(at));
       const Lanes support = hn::Mul(radius, hn::Set(d, constants.max_support_factor));
-      const LaneMask reaches = find_reach(d, frame, frustum, centers, support).any;
-      const auto index = numbers_from(static_cast<std::uint32_t>(at));
+      const LaneMask reaches = may_reach(d, frame, frustum, centers, support);
+      if (hn::AllFalse(d, reaches)) continue;
+      const Lanes weight = hn::Load(d, kernels.weight.from(at));
       hn::StoreU(hn::Compress(centers.x, reaches), d, out.x.data() + out.size);
       hn::StoreU(hn::Compress(centers.y, reaches), d, out.y.data() + out.size);
       hn::StoreU(hn::Compress(centers.z, reaches), d, out.z.data() + out.size);
       hn::StoreU(hn::Compress(radius, reaches), d, out.radius.data() + out.size);
-      hn::StoreU(hn::Compress(index, hn::RebindMask(du, reaches)), du, out.index.data() + out.size);
+      hn::StoreU(hn::Compress(weight, reaches), d, out.weight.data() + out.size);
+      auto field = hn::Zero(du);
+      if (!kernels.field.empty()) {
+        field =
+            hn::PromoteTo(du, hn::LoadU(hn::Rebind<std::uint8_t, LaneTag>(), &kernels.field[at]));
+      }
+      hn::StoreU(hn::Compress(field, hn::RebindMask(du, reaches)), du, out.field.data() + out.size);
       out.size += hn::CountTrue(d, reaches);
     }
+  };
+  // Leaves wait for some others while their positions are fetched: mostly from main memory, which
+  // takes longer than all that is done with them.
+  std::array<std::size_t, 32> waiting;
+  std::size_t num_visited = 0;
+  const auto visit = [&](std::size_t leaf) HWY_ATTR {
+    for (const auto* array : {&kernels.x, &kernels.y, &kernels.z}) {
+      hwy::Prefetch(array->data() + leaf * Bvh::leaf_size);
+    }
+    hwy::Prefetch(kernels.radius.from(leaf * Bvh::leaf_size));
+    hwy::Prefetch(kernels.weight.from(leaf * Bvh::leaf_size));
+    std::size_t& place = waiting[num_visited % waiting.size()];
+    if (num_visited++ >= waiting.size()) add_leaf(place);
+    place = leaf;
   };
   out.reserve(max_lanes);
   traverse(
@@ -96,7 +123,11 @@ HWY_NOINLINE void gather_kernels(const KernelSet& kernels, const SamplingConstan
         return node_hits(node, frame, frustum, constants.max_support_factor);
       },
       visit);
-  finish_kernels(kernels, constants, out);
+  const std::size_t num_waiting = std::min(num_visited, waiting.size());
+  for (std::size_t i = num_visited - num_waiting; i < num_visited; ++i) {
+    add_leaf(waiting[i % waiting.size()]);
+  }
+  finish_kernels(constants, out);
 }
 
 }  // namespace HWY_NAMESPACE

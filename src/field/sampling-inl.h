@@ -147,32 +147,29 @@ HWY_INLINE Centers<V> place_centers(D d, const KernelSet& kernels, std::size_t a
           to_camera(d, frame, 2, world[0], world[1], world[2])};
 }
 
-/// Which planes of the slab kernels can reach within a frustum.
+/// A lower bound of the squared distance of centres to the frustum's sides, exact where only one is
+/// in the way.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V side_distance_sq(D d, const Frustum& frustum, const Centers<V>& centers) {
+  const FrustumPlane* sides = frustum.planes;
+  const V out_x =
+      outside_sides(d, sides[0], sides[1], sides[0].x, sides[1].x, centers.x, centers.z);
+  const V out_y =
+      outside_sides(d, sides[2], sides[3], sides[2].y, sides[3].y, centers.y, centers.z);
+  return hn::Mul(hn::MulAdd(out_x, out_x, hn::Mul(out_y, out_y)),
+                 hn::Set(d, frustum.corner_factor));
+}
+
+/// Planes of a slab.
 template <class D>
-struct Reach {
+struct PlaneRange {
   hn::Vec<D> first, last;  ///< whole numbers
-  hn::Mask<D> any;         ///< the kernel may reach a sample at all
+  hn::Mask<D> any;         ///< there are such
 };
 
+/// Those that lie at most `reach` away from depth z.
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE Reach<D> find_reach(D d, const SlabFrame& frame, const Frustum& frustum,
-                               const Centers<V>& centers, V support) {
-  // A lower bound of the distance to the frustum's sides, exact where only one is in the way.
-  const FrustumPlane* sides = frustum.planes;
-  const V z = centers.z;
-  const V out_x = outside_sides(d, sides[0], sides[1], sides[0].x, sides[1].x, centers.x, z);
-  const V out_y = outside_sides(d, sides[2], sides[3], sides[2].y, sides[3].y, centers.y, z);
-  const V distance_sq =
-      hn::Mul(hn::MulAdd(out_x, out_x, hn::Mul(out_y, out_y)), hn::Set(d, frustum.corner_factor));
-  const V support_sq = hn::Mul(support, support);
-
-  // Which planes: the samples at distance rho >= sqrt(distance_sq) from the centre, measured
-  // across the ray, lie at most sqrt(R^2 - rho^2) cos + rho sin in front of it or behind.
-  const V rho = hn::Sqrt(distance_sq);
-  const V half_chord = hn::Sqrt(hn::Max(hn::Zero(d), hn::Sub(support_sq, distance_sq)));
-  const V sine = hn::Set(d, frustum.max_sine);
-  const V slanted = hn::MulAdd(half_chord, hn::Set(d, frustum.max_cosine), hn::Mul(rho, sine));
-  const V reach = hn::IfThenElse(hn::Le(rho, hn::Mul(support, sine)), support, slanted);
+HWY_INLINE PlaneRange<D> planes_within(D d, const SlabFrame& frame, V z, V reach) {
   const V inverse_step = hn::Set(d, 1.0f / frame.step);
   const V rounding = hn::Set(d, 1e-4f + 1e-6f * static_cast<float>(frame.count));  // of planes
   const V middle = hn::Mul(hn::Sub(z, hn::Set(d, frame.first_depth)), inverse_step);
@@ -180,7 +177,35 @@ HWY_INLINE Reach<D> find_reach(D d, const SlabFrame& frame, const Frustum& frust
   const V last_plane = hn::Set(d, static_cast<float>(frame.count - 1));
   const V first = hn::Max(hn::Zero(d), hn::Ceil(hn::Sub(middle, planes)));
   const V last = hn::Min(last_plane, hn::Floor(hn::Add(middle, planes)));
-  return {first, last, hn::And(hn::Le(distance_sq, support_sq), hn::Le(first, last))};
+  return {first, last, hn::Le(first, last)};
+}
+
+/// Which kernels may reach a sample within the frustum: not much more than do.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE hn::Mask<D> may_reach(D d, const SlabFrame& frame, const Frustum& frustum,
+                                 const Centers<V>& centers, V support) {
+  const V distance_sq = side_distance_sq(d, frustum, centers);
+  return hn::And(hn::Le(distance_sq, hn::Mul(support, support)),
+                 planes_within(d, frame, centers.z, support).any);
+}
+
+/// Which planes of the slab kernels can reach within the frustum; `any`: they may reach a sample at
+/// all.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE PlaneRange<D> find_reach(D d, const SlabFrame& frame, const Frustum& frustum,
+                                    const Centers<V>& centers, V support) {
+  const V distance_sq = side_distance_sq(d, frustum, centers);
+  const V support_sq = hn::Mul(support, support);
+  // The samples at distance rho >= sqrt(distance_sq) from the centre, measured across the ray, lie
+  // at most sqrt(R^2 - rho^2) cos + rho sin in front of it or behind.
+  const V rho = hn::Sqrt(distance_sq);
+  const V half_chord = hn::Sqrt(hn::Max(hn::Zero(d), hn::Sub(support_sq, distance_sq)));
+  const V sine = hn::Set(d, frustum.max_sine);
+  const V slanted = hn::MulAdd(half_chord, hn::Set(d, frustum.max_cosine), hn::Mul(rho, sine));
+  const V reach = hn::IfThenElse(hn::Le(rho, hn::Mul(support, sine)), support, slanted);
+  PlaneRange<D> planes = planes_within(d, frame, centers.z, reach);
+  planes.any = hn::And(planes.any, hn::Le(distance_sq, support_sq));
+  return planes;
 }
 
 /// The kernels of a leaf in a frame: where they lie, and which of them reach into the frustum.

@@ -40,6 +40,7 @@ inline constexpr float thin_pixels_per_plane = 16;
 using DepthTag = hn::CappedTag<float, 8>;
 using DepthLanes = hn::Vec<DepthTag>;
 inline constexpr int depth_lanes = static_cast<int>(hn::MaxLanes(DepthTag()));
+inline constexpr std::uint32_t num_depths = ColumnBuffer::planes / depth_lanes;
 
 /// Planes of a slab, an element each: see AreaPlane.
 struct AreaPlanes {
@@ -71,10 +72,11 @@ struct PixelBox {
   std::uint8_t column, row, last_column, last_row;
 };
 
-/// Gathered kernels that reach but a few pixels.
+/// Gathered kernels that reach but a few pixels; an element for each vector of planes that one
+/// reaches.
 struct ThinKernels {
   AlignedVector<std::uint32_t> kernel, box;
-  AlignedVector<std::uint32_t> planes;  ///< first plane it may reach, and 256 times the last
+  AlignedVector<std::uint32_t> depth;  ///< which vector of planes
   std::size_t size = 0;
 
   PixelBox box_of(std::size_t i) const { return std::bit_cast<PixelBox>(box[i]); }
@@ -82,14 +84,14 @@ struct ThinKernels {
   void start(std::size_t count) {
     size = 0;
     if (count + max_lanes <= kernel.size()) return;
-    for (auto* array : {&kernel, &box, &planes}) array->resize(2 * (count + max_lanes));
+    for (auto* array : {&kernel, &box, &depth}) array->resize(2 * (count + max_lanes));
   }
   template <class V, class M>
-  HWY_INLINE void append(V kernels, V boxes, V reached, M which) {
+  HWY_INLINE void append(V kernels, V boxes, std::uint32_t one_depth, M which) {
     const hn::RebindToUnsigned<LaneTag> du;
     hn::StoreU(hn::Compress(kernels, which), du, kernel.data() + size);
     hn::StoreU(hn::Compress(boxes, which), du, box.data() + size);
-    hn::StoreU(hn::Compress(reached, which), du, planes.data() + size);
+    hn::StoreU(hn::Set(du, one_depth), du, depth.data() + size);
     size += hn::CountTrue(du, which);
   }
 };
@@ -127,7 +129,7 @@ HWY_NOINLINE std::size_t find_thin_kernels(const AreaPlanes& planes, GatheredKer
   const LaneTag d;
   const hn::RebindToSigned<LaneTag> di;
   const hn::RebindToUnsigned<LaneTag> du;
-  for (ThinKernels& list : out) list.start(gathered.size);
+  for (ThinKernels& list : out) list.start(gathered.size * num_depths);
   std::size_t others = 0;
   const int last_plane = planes.count - 1;
   const float depth = planes.z[last_plane] - planes.z[0];
@@ -180,20 +182,24 @@ HWY_NOINLINE std::size_t find_thin_kernels(const AreaPlanes& planes, GatheredKer
     const auto box =
         hn::Or(hn::Or(whole(first_column), hn::ShiftLeft<8>(whole(first_row))),
                hn::Or(hn::ShiftLeft<16>(whole(last_column)), hn::ShiftLeft<24>(whole(last_row))));
-    const Lanes last_t = hn::Min(t[1], one), rounding = hn::Set(d, 1e-3f);
     const Lanes last_number = hn::Set(d, static_cast<float>(last_plane));
-    const auto first = whole(hn::Max(hn::MulSub(t[0], last_number, rounding), hn::Zero(d)));
-    const auto last = whole(hn::Min(hn::MulAdd(last_t, last_number, rounding), last_number));
-    const auto reached = hn::Or(first, hn::ShiftLeft<8>(last));
+    const Lanes first = hn::Mul(t[0], last_number), last = hn::Mul(t[1], last_number);
     const auto kernel = numbers_from(static_cast<std::uint32_t>(i));
-    const Lanes size = hn::Add(hn::Max(width, height), one);
-    float above = 0;
-    for (std::size_t l = 0; l < out.size(); ++l) {
-      const auto most_pixels = static_cast<float>(thin_sizes[l]);
-      const LaneMask fits_list =
-          hn::And(hn::Gt(size, hn::Set(d, above)), hn::Le(size, hn::Set(d, most_pixels)));
-      out[l].append(kernel, box, reached, hn::And(listed, hn::RebindMask(du, fits_list)));
-      above = most_pixels;
+    const Lanes size = hn::Add(hn::Max(width, height), one), rounding = hn::Set(d, 1e-3f);
+    for (std::uint32_t depth = 0; depth < num_depths; ++depth) {
+      const auto begin = static_cast<float>(depth * depth_lanes);
+      const LaneMask in_depth =
+          hn::And(hn::Le(hn::Sub(first, rounding), hn::Set(d, begin + depth_lanes - 1)),
+                  hn::Ge(hn::Add(last, rounding), hn::Set(d, begin)));
+      const auto here = hn::And(listed, hn::RebindMask(du, in_depth));
+      float above = 0;
+      for (std::size_t l = 0; l < out.size(); ++l) {
+        const auto most_pixels = static_cast<float>(thin_sizes[l]);
+        const LaneMask fits_list =
+            hn::And(hn::Gt(size, hn::Set(d, above)), hn::Le(size, hn::Set(d, most_pixels)));
+        out[l].append(kernel, box, depth, hn::And(here, hn::RebindMask(du, fits_list)));
+        above = most_pixels;
+      }
     }
   }
   return others;
@@ -246,7 +252,7 @@ HWY_INLINE std::uint64_t add_to_pixel(DepthTag d, const DepthFactors<kSize, C>& 
   if constexpr (C::gradients) {
     const DepthLanes phi = hn::IfThenElseZero(inside, p);
     const auto add = [&](int channel, const float* slope) MOTES_INLINE HWY_ATTR {
-      float* const gradient = samples + channel * ColumnBuffer::planes;
+      float* const gradient = samples + channel * depth_lanes;
       hn::Store(hn::MulAdd(phi, hn::Load(d, slope), hn::Load(d, gradient)), d, gradient);
     };
     add(1, factors.column_slope[i]);
@@ -254,7 +260,7 @@ HWY_INLINE std::uint64_t add_to_pixel(DepthTag d, const DepthFactors<kSize, C>& 
     add(3, factors.slope_z);
   }
   if constexpr (C::absolute) {
-    float* const absolute = samples + 4 * ColumnBuffer::planes;
+    float* const absolute = samples + 4 * depth_lanes;
     hn::Store(add_inside(d, inside, magnitude, hn::Load(d, absolute)), d, absolute);
   }
   return C::count ? hn::CountTrue(d, inside) : 0;
@@ -268,34 +274,31 @@ HWY_NOINLINE void add_thin_kernels(const GatheredKernels& gathered, const ThinKe
                                    const SampleLayout& layout, ColumnBuffer& buffer,
                                    EvaluationCounts& counts) {
   const DepthTag d;
-  const std::size_t field_floats =
-      static_cast<std::size_t>(layout.channels()) * std::size_t{ColumnBuffer::planes};
+  const auto field_floats = static_cast<std::size_t>(layout.channels() * depth_lanes);
+  const std::size_t depth_floats = field_floats * static_cast<std::size_t>(layout.num_fields);
   for (std::size_t n = 0; n < list.size; ++n) {
     const PixelBox box = list.box_of(n);
     const int first_row = box.row / AreaBuffer::group_size;
     const int last_row = box.last_row / AreaBuffer::group_size;
     const GroupBits groups = (2u << box.last_column / AreaBuffer::group_size) -
                              (1u << box.column / AreaBuffer::group_size);
-    const auto row_at = [](int row) { return static_cast<std::size_t>(row); };
-    if (((live.row(row_at(first_row)) | live.row(row_at(last_row))) & groups) == 0) continue;
-    for (int row = first_row; row <= last_row; ++row) buffer.touched(row) |= groups;
-    const std::size_t k = list.kernel[n];
+    static_assert(max_thin_pixels <= 2 * AreaBuffer::group_size);
+    const int middle_row = (first_row + last_row) / 2;  // so at most three, without a loop
+    if (((live.row(first_row) | live.row(middle_row) | live.row(last_row)) & groups) == 0) continue;
+    for (const int row : {first_row, middle_row, last_row}) buffer.touched(row) |= groups;
+    const std::size_t k = list.kernel[n], depth = list.depth[n];
     const DepthLanes cut = hn::Set(d, gathered.cut[k]);
-    float* const first = buffer.at(box.row, box.column) + gathered.field[k] * field_floats;
-    const int first_plane = static_cast<int>(list.planes[n] & 0xff);
-    const int last_plane = static_cast<int>(list.planes[n] >> 8);
-    for (int v = first_plane / depth_lanes * depth_lanes; v <= last_plane; v += depth_lanes) {
-      DepthFactors<kSize, C> factors;
-      factors.fill(d, gathered, k, planes, box, v);
-      float* row_samples = first + v;
-      for (int j = 0; j < kSize; ++j, row_samples += buffer.row_floats()) {
-        float* samples = row_samples;
-        for (int i = 0; i < kSize; ++i, samples += buffer.pixel_floats()) {
-          counts.inside_support += add_to_pixel(d, factors, cut, i, j, samples);
-        }
+    DepthFactors<kSize, C> factors;
+    factors.fill(d, gathered, k, planes, box, static_cast<int>(depth) * depth_lanes);
+    float* row_samples =
+        buffer.at(box.row, box.column) + depth * depth_floats + gathered.field[k] * field_floats;
+    for (int j = 0; j < kSize; ++j, row_samples += buffer.row_floats()) {
+      float* samples = row_samples;
+      for (int i = 0; i < kSize; ++i, samples += buffer.pixel_floats()) {
+        counts.inside_support += add_to_pixel(d, factors, cut, i, j, samples);
       }
-      counts.carried_out += std::uint64_t{kSize * kSize * depth_lanes};
     }
+    counts.carried_out += std::uint64_t{kSize * kSize * depth_lanes};
   }
 }
 
@@ -325,13 +328,12 @@ HWY_INLINE void transpose_fours(LaneTag d, Lanes& v0, Lanes& v1, Lanes& v2, Lane
   v3 = hn::BitCast(d, hn::InterleaveUpper(dw, c, e));
 }
 
-/// Pixels of a block with planes in their lanes become planes with pixels in theirs: vector p of
-/// num_lanes pixels, row by row, then is plane p.
+/// num_lanes vectors become their transpose.
 HWY_INLINE void transpose_block(LaneTag d, Lanes (&v)[num_lanes]) {
   for (int y = 0; y < num_lanes; y += 4) {
     transpose_fours(d, v[y], v[y + 1], v[y + 2], v[y + 3]);
   }
-  // Vector 4 y + j now has, in its 128 bits q, plane 4 q + j of the pixels of row y.
+  // Vector 4 y + j now has, in its 128 bits q, the numbers 4 q + j of vectors 4 y to 4 y + 3.
 #if HWY_TARGET <= HWY_AVX3
   static_assert(num_lanes == 16);
   constexpr int even = _MM_SHUFFLE(2, 0, 2, 0), odd = _MM_SHUFFLE(3, 1, 3, 1);
@@ -365,25 +367,29 @@ HWY_NOINLINE void move_group(ColumnBuffer& columns, int row, int column, int num
   AreaBuffer::PlaneBits* const touched = area.touched(row, column);
   for (int block = 0; block < group_blocks; ++block) {
     float* const out = area.at(row, column) + static_cast<std::size_t>(block) * area.block_floats();
-    for (int channel = 0; channel < num_channels; ++channel) {
-      for (int plane = 0; plane < num_planes; plane += num_lanes) {
-        Lanes v[num_lanes];
-        for (int pixel = 0; pixel < num_lanes; ++pixel) {
-          const int y = size * row + block * block_rows + pixel / size;
-          float* const in =
-              columns.at(y, size * column + pixel % size) + channel * ColumnBuffer::planes + plane;
-          v[pixel] = hn::Load(d, in);
-          hn::Store(hn::Zero(d), d, in);
-        }
-        transpose_block(d, v);
-        float* at =
-            out + static_cast<std::size_t>(plane) * area.plane_floats() + channel * num_lanes;
+    float* const first = columns.at(size * row + block * block_rows, size * column);
+    const int num_floats = num_channels * ColumnBuffer::planes;
+    for (int at = 0; at < num_floats; at += num_lanes) {
+      Lanes v[num_lanes];
+      for (int pixel = 0; pixel < num_lanes; ++pixel) {
+        float* const in = first + static_cast<std::size_t>(pixel / size) * columns.row_floats() +
+                          static_cast<std::size_t>(pixel % size) * columns.pixel_floats() + at;
+        v[pixel] = hn::Load(d, in);
+        hn::Store(hn::Zero(d), d, in);
+      }
+      transpose_block(d, v);
+      // Planes of one channel or, where vectors of planes are shorter, of some in turn.
+      for (int part = 0; part < num_lanes / depth_lanes; ++part) {
+        const int unit = at / depth_lanes + part;
+        const int channel = unit % num_channels, plane = unit / num_channels * depth_lanes;
         AreaBuffer::PlaneBits any = 0;
-        for (int k = 0; k < std::min(num_lanes, num_planes - plane); ++k) {
-          hn::Store(v[k], d, at);
-          at += area.plane_floats();
-          const bool is_zero = hn::AllTrue(d, hn::Eq(v[k], hn::Zero(d)));
-          any |= (is_zero ? 0u : 1u) << k;
+        float* to =
+            out + static_cast<std::size_t>(plane) * area.plane_floats() + channel * num_lanes;
+        for (int k = 0; k < std::min(depth_lanes, num_planes - plane); ++k) {
+          const Lanes values = v[part * depth_lanes + k];
+          hn::Store(values, d, to);
+          to += area.plane_floats();
+          any |= (hn::AllTrue(d, hn::Eq(values, hn::Zero(d))) ? 0u : 1u) << k;
         }
         touched[channel / layout.channels()] |= any << plane;
       }

@@ -115,41 +115,37 @@ HWY_INLINE Lanes look_up(LaneTag d, const Classifier& c, int row,
   }
 }
 
-/// Where samples' arguments lie in a classifier's table.
-template <std::size_t N>
-struct TablePlaces {
-  std::array<hn::Vec<hn::RebindToSigned<LaneTag>>, N> segment;
-  std::array<Lanes, N> fraction;  ///< of the segment, in [0, 1]: clamped at the table's ends
+/// Where a sample's argument lies in a classifier's table.
+struct TablePlace {
+  hn::Vec<hn::RebindToSigned<LaneTag>> segment;
+  Lanes fraction;  ///< of the segment, in [0, 1]: clamped at the table's ends
 };
 
 /// Named colour maps are evenly spaced.
-template <TableKind kKind, std::size_t N>
-HWY_INLINE void place_evenly(LaneTag d, const Classifier& c, float begin,
-                             const std::array<Lanes, N>& argument, TablePlaces<N>& out) {
+template <TableKind kKind>
+HWY_INLINE TablePlace place_evenly(LaneTag d, const Classifier& c, float begin, Lanes argument) {
   const hn::RebindToSigned<LaneTag> di;
   const Lanes per_segment = hn::Set(d, c.inverse_spacing);
   const Lanes first = hn::Set(d, -begin * c.inverse_spacing);
   // Just short of the end, so that the last segment's end is no segment of its own.
   const Lanes end = hn::Set(d, static_cast<float>(c.num_segments) * (1 - 0x1p-23f));
+  const Lanes from_begin = hn::MulAdd(argument, per_segment, first);
+  const Lanes place = hn::Min(hn::Max(from_begin, hn::Zero(d)), end);
   // Adding 1.5 * 2^23 rounds to an integer and leaves it in the low bits of the sum.
   const Lanes shifter = hn::Set(d, 12582912.0f);
-  unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR {
-    const Lanes from_begin = hn::MulAdd(argument[n], per_segment, first);
-    const Lanes place = hn::Min(hn::Max(from_begin, hn::Zero(d)), end);
 #if HWY_TARGET <= HWY_AVX3
-    const Lanes sum{
-        _mm512_add_round_ps(place.raw, shifter.raw, _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC)};
+  const Lanes sum{
+      _mm512_add_round_ps(place.raw, shifter.raw, _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC)};
 #else
-    // Half a segment less rounds down; between two segments either will do.
-    const Lanes sum = hn::Add(hn::Sub(place, hn::Set(d, 0.5f)), shifter);
+  // Half a segment less rounds down; between two segments either will do.
+  const Lanes sum = hn::Add(hn::Sub(place, hn::Set(d, 0.5f)), shifter);
 #endif
-    out.segment[n] = hn::BitCast(di, sum);
-    // A permutation of AVX-512 reads no more than the low bits.
-    if constexpr (HWY_TARGET > HWY_AVX3 || kKind == TableKind::many) {
-      out.segment[n] = hn::And(out.segment[n], hn::Set(di, 0xffff));
-    }
-    out.fraction[n] = hn::Sub(place, hn::Sub(sum, shifter));
-  });
+  auto segment = hn::BitCast(di, sum);
+  // A permutation of AVX-512 reads no more than the low bits.
+  if constexpr (HWY_TARGET > HWY_AVX3 || kKind == TableKind::many) {
+    segment = hn::And(segment, hn::Set(di, 0xffff));
+  }
+  return {segment, hn::Sub(place, hn::Sub(sum, shifter))};
 }
 
 /// Bisection for long tables: the last segment whose begin is not above the argument.
@@ -168,47 +164,33 @@ HWY_INLINE hn::Vec<hn::RebindToSigned<LaneTag>> bisect(LaneTag d, const Classifi
   return segment;
 }
 
-template <TableKind kKind, std::size_t N>
-HWY_INLINE TablePlaces<N> find_segments(LaneTag d, const Classifier& c,
-                                        const std::array<Lanes, N>& argument) {
+template <TableKind kKind>
+HWY_INLINE TablePlace find_segment(LaneTag d, const Classifier& c, Lanes argument) {
   const hn::RebindToSigned<LaneTag> di;
   const float* const begins = row_of<kKind>(c, Classifier::begin);
-  TablePlaces<N> out;
   if (kKind != TableKind::one_segment && c.inverse_spacing > 0) {
-    place_evenly<kKind>(d, c, begins[0], argument, out);
-    return out;
+    return place_evenly<kKind>(d, c, begins[0], argument);
   }
-  out.segment.fill(hn::Zero(di));
+  auto segment = hn::Zero(di);
   if (kKind != TableKind::one_segment && c.num_segments <= 2 * max_lanes) {
     for (int s = 1; s < c.num_segments; ++s) {
-      const Lanes begin = hn::Set(d, begins[s]);
-      unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR {
-        const auto behind = hn::RebindMask(di, hn::Ge(argument[n], begin));
-        out.segment[n] = hn::Sub(out.segment[n], hn::VecFromMask(di, behind));
-      });
+      const auto behind = hn::RebindMask(di, hn::Ge(argument, hn::Set(d, begins[s])));
+      segment = hn::Sub(segment, hn::VecFromMask(di, behind));
     }
   } else if constexpr (kKind == TableKind::many) {
-    unroll<N>([&](std::size_t n)
-                  MOTES_INLINE HWY_ATTR { out.segment[n] = bisect(d, c, begins, argument[n]); });
+    segment = bisect(d, c, begins, argument);
   }
-  unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR {
-    const Lanes begin = look_up<kKind>(d, c, Classifier::begin, out.segment[n]);
-    const Lanes inverse_width = look_up<kKind>(d, c, Classifier::inverse_width, out.segment[n]);
-    const Lanes fraction = hn::Mul(hn::Sub(argument[n], begin), inverse_width);
-    out.fraction[n] = hn::Min(hn::Max(fraction, hn::Zero(d)), hn::Set(d, 1.0f));
-  });
-  return out;
+  const Lanes begin = look_up<kKind>(d, c, Classifier::begin, segment);
+  const Lanes inverse_width = look_up<kKind>(d, c, Classifier::inverse_width, segment);
+  const Lanes fraction = hn::Mul(hn::Sub(argument, begin), inverse_width);
+  return {segment, hn::Min(hn::Max(fraction, hn::Zero(d)), hn::Set(d, 1.0f))};
 }
 
-/// Red, green, blue (0 to 2) or extinction times step (3) at places of the table.
-template <TableKind kKind, std::size_t N>
-HWY_INLINE void read_table(LaneTag d, const Classifier& c, int i, const TablePlaces<N>& places,
-                           std::array<Lanes, N>& out) {
-  unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR {
-    out[n] = hn::MulAdd(places.fraction[n],
-                        look_up<kKind>(d, c, Classifier::rise + i, places.segment[n]),
-                        look_up<kKind>(d, c, Classifier::base + i, places.segment[n]));
-  });
+/// Red, green, blue (0 to 2) or extinction times step (3) at a place of the table.
+template <TableKind kKind>
+HWY_INLINE Lanes read_table(LaneTag d, const Classifier& c, int i, const TablePlace& place) {
+  return hn::MulAdd(place.fraction, look_up<kKind>(d, c, Classifier::rise + i, place.segment),
+                    look_up<kKind>(d, c, Classifier::base + i, place.segment));
 }
 
 /// The classifier's argument for a value of the buffer, with a logarithmic scale. Finite also where
@@ -273,26 +255,45 @@ HWY_INLINE std::array<Lanes, N> twice_inverse_sqrt(LaneTag d, const std::array<L
   return root;
 }
 
-/// What a block's samples are classified and lit with.
-struct BlockShading {
+/// What a frame's samples are classified and lit with.
+struct FrameShading {
   const std::vector<Classifier>& classifiers;
   const ShadingConstants& constants;
-  const SampleLayout& layout;
+  SampleLayout layout;
+  bool zero_shows;  ///< something may be seen where there is no kernel
+  float max_depth;  ///< largest optical depth of a sample
+  /// Where kernels cancel there is no normal: |gradient| <= least_gradient sum |phi|; one a field.
+  float least_gradient[max_fields];
+
+  FrameShading(const std::vector<Classifier>& the_classifiers,
+               const ShadingConstants& the_constants, const SampleLayout& the_layout)
+      : classifiers(the_classifiers),
+        constants(the_constants),
+        layout(the_layout),
+        zero_shows(false),
+        max_depth(0) {
+    for (std::size_t f = 0; f < classifiers.size(); ++f) {
+      zero_shows |= classifiers[f].visibility.shows_zero();
+      max_depth = std::max(max_depth, classifiers[f].max_depth * constants.max_ray_length);
+      least_gradient[f] = 1e-6f / constants.min_radius[f];
+    }
+  }
+};
+
+/// And a block's.
+struct BlockShading {
+  const FrameShading& frame;
   Lanes length;  ///< of the rays' directions
   /// With gradients: half of the unit vectors to the light, and halfway from it to the eye.
   Lanes half_to_light[3], half_halfway[3];
 
-  BlockShading(LaneTag d, const std::vector<Classifier>& the_classifiers,
-               const ShadingConstants& the_constants, const SampleLayout& the_layout,
-               const RayState& rays)
-      : classifiers(the_classifiers),
-        constants(the_constants),
-        layout(the_layout),
-        length(hn::Load(d, rays.length)) {
+  BlockShading(LaneTag d, const FrameShading& the_frame, const RayState& rays)
+      : frame(the_frame), length(hn::Load(d, rays.length)) {
+    const ShadingConstants& constants = frame.constants;
     for (int i = 0; i < 3; ++i) {
       half_to_light[i] = half_halfway[i] = hn::Load(d, rays.half_to_eye[i]);
     }
-    if (constants.headlight || !layout.gradients) return;
+    if (constants.headlight || !frame.layout.gradients) return;
     for (int i = 0; i < 3; ++i) {
       half_to_light[i] = hn::Set(d, 0.5f * constants.light[i]);
       half_halfway[i] = hn::Add(half_to_light[i], half_halfway[i]);
@@ -313,24 +314,31 @@ struct Light {
   std::array<Lanes, N> diffuse, specular;
 };
 
-/// Gradients of some samples of a field, and two over their norms; 0 where there is no normal.
+/// Samples that are classified side by side.
+template <std::size_t N>
+struct SamplesAtOnce {
+  std::array<const float*, N> channels;  ///< their field's channel 0
+  std::array<std::size_t, N> field;
+};
+
+/// Gradients of some samples, and two over their norms; 0 where there is no normal.
 template <std::size_t N>
 struct Normals {
   std::array<Lanes, N> x, y, z, scale;
 
-  HWY_INLINE void load(LaneTag d, const SampleLayout& layout, float min_radius,
-                       const std::array<const float*, N>& channels) {
-    // Where kernels cancel there is no normal: |gradient| min_radius < 1e-6 sum |phi|.
+  HWY_INLINE void load(LaneTag d, const FrameShading& frame, const SamplesAtOnce<N>& samples) {
+    const SampleLayout& layout = frame.layout;
     const auto absolute_at =
         static_cast<std::size_t>(layout.absolute ? layout.absolute_channel() * num_lanes : 0);
-    const Lanes least_scale = hn::Set(d, 1e-6f / min_radius);
+    const auto& channels = samples.channels;
     std::array<Lanes, N> norm_sq, least;
     unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR {
       x[n] = hn::Load(d, channels[n] + num_lanes);
       y[n] = hn::Load(d, channels[n] + 2 * num_lanes);
       z[n] = hn::Load(d, channels[n] + 3 * num_lanes);
       norm_sq[n] = hn::MulAdd(x[n], x[n], hn::MulAdd(y[n], y[n], hn::Mul(z[n], z[n])));
-      least[n] = hn::Mul(hn::Load(d, channels[n] + absolute_at), least_scale);
+      least[n] = hn::Mul(hn::Load(d, channels[n] + absolute_at),
+                         hn::Set(d, frame.least_gradient[samples.field[n]]));
     });
     const std::array<Lanes, N> twice_inverse = twice_inverse_sqrt(d, norm_sq);
     unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR {
@@ -351,13 +359,13 @@ struct Normals {
   }
 };
 
-/// Two-sided Phong lighting (docs/field.md). `channels`: the field's channel 0 of each sample.
+/// Two-sided Phong lighting (docs/field.md).
 template <bool kPlain, std::size_t N>
-HWY_INLINE Light<N> light_samples(LaneTag d, const BlockShading& shading, std::size_t field,
-                                  const std::array<const float*, N>& channels) {
-  const ShadingConstants& constants = shading.constants;
+HWY_INLINE Light<N> light_samples(LaneTag d, const BlockShading& shading,
+                                  const SamplesAtOnce<N>& samples) {
+  const ShadingConstants& constants = shading.frame.constants;
   Normals<N> normals;
-  normals.load(d, shading.layout, constants.min_radius[field], channels);
+  normals.load(d, shading.frame, samples);
   Light<N> light;
   light.diffuse = light.specular = normals.along(d, shading.half_to_light);
   if (!constants.headlight) light.specular = normals.along(d, shading.half_halfway);
@@ -365,7 +373,7 @@ HWY_INLINE Light<N> light_samples(LaneTag d, const BlockShading& shading, std::s
   return light;
 }
 
-/// What samples of a field add to their rays.
+/// What samples add to their rays.
 template <std::size_t N>
 struct Contributions {
   std::array<Lanes, N> opacity;
@@ -375,34 +383,44 @@ struct Contributions {
 
 /// Nothing is needed that takes a call: no logarithm, no opacity of thick samples, no broken power.
 /// Registers need not be kept for it then.
-inline bool is_plain(const std::vector<Classifier>& classifiers,
-                     const ShadingConstants& constants) {
-  return is_plain_power(constants.shininess) &&
-         std::none_of(classifiers.begin(), classifiers.end(), [&](const Classifier& c) {
-           return c.log_scale || c.max_depth * constants.max_ray_length > 1;
-         });
+inline bool is_plain(const FrameShading& frame) {
+  return is_plain_power(frame.constants.shininess) && frame.max_depth <= 1 &&
+         std::none_of(frame.classifiers.begin(), frame.classifiers.end(),
+                      [](const Classifier& c) { return c.log_scale; });
 }
 
-/// `channels`: the field's channel 0 of each sample. kPlain: is_plain().
-template <bool kGradients, bool kPlain, TableKind kKind, std::size_t N>
-HWY_INLINE void classify(LaneTag d, const BlockShading& shading, std::size_t field,
-                         const std::array<const float*, N>& channels, Contributions<N>& out) {
-  const Classifier& c = shading.classifiers[field];
+/// kPlain: is_plain(). kOneField: there is but one field.
+template <bool kGradients, bool kPlain, bool kOneField, TableKind kKind, std::size_t N>
+HWY_INLINE void classify(LaneTag d, const BlockShading& shading, const SamplesAtOnce<N>& samples,
+                         Contributions<N>& out) {
+  const auto classifier_of = [&](std::size_t n) MOTES_INLINE HWY_ATTR -> const Classifier& {
+    return shading.frame.classifiers[kOneField ? 0 : samples.field[n]];
+  };
   std::array<Lanes, N> argument;
-  unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR { argument[n] = hn::Load(d, channels[n]); });
+  unroll<N>([&](std::size_t n)
+                MOTES_INLINE HWY_ATTR { argument[n] = hn::Load(d, samples.channels[n]); });
   if constexpr (!kPlain) {
-    if (c.log_scale) {
-      for (Lanes& each : argument) each = logarithmic_argument(d, c, each);
+    for (std::size_t n = 0; n < N; ++n) {
+      const Classifier& c = classifier_of(n);
+      if (c.log_scale) argument[n] = logarithmic_argument(d, c, argument[n]);
     }
   }
-  const TablePlaces<N> places = find_segments<kKind>(d, c, argument);
-  read_table<kKind>(d, c, 3, places, out.opacity);
-  unroll<N>([&](std::size_t n)
-                HWY_ATTR { out.opacity[n] = hn::Mul(out.opacity[n], shading.length); });
-  to_opacity<kPlain>(d, c.max_depth * shading.constants.max_ray_length, out.opacity);
-  unroll<3>([&](std::size_t i)
-                HWY_ATTR { read_table<kKind>(d, c, static_cast<int>(i), places, out.color[i]); });
-  if constexpr (kGradients) out.light = light_samples<kPlain>(d, shading, field, channels);
+  std::array<TablePlace, N> places;
+  unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR {
+    places[n] = find_segment<kKind>(d, classifier_of(n), argument[n]);
+  });
+  const auto read = [&](int i, std::array<Lanes, N>& values) MOTES_INLINE HWY_ATTR {
+    unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR {
+      values[n] = read_table<kKind>(d, classifier_of(n), i, places[n]);
+    });
+  };
+  read(3, out.opacity);
+  unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR {
+    out.opacity[n] = hn::Mul(out.opacity[n], shading.length);
+  });
+  to_opacity<kPlain>(d, shading.frame.max_depth, out.opacity);
+  unroll<3>([&](std::size_t i) MOTES_INLINE HWY_ATTR { read(static_cast<int>(i), out.color[i]); });
+  if constexpr (kGradients) out.light = light_samples<kPlain>(d, shading, samples);
 }
 
 /// What is left of a colour in the light.

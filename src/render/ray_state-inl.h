@@ -61,6 +61,13 @@ inline void start_rays(const FrameContext& context, int px, int py, int width, i
   const V first_plane = hn::Set(d, static_cast<double>(context.view.planes.first));
   const auto store = [&](V v, float* out) HWY_ATTR { hn::StoreU(hn::DemoteTo(df, v), df, out); };
   V begin = hn::Set(d, 1e9), end = hn::Set(d, -1.0);
+  alignas(64) double in_image[max_lanes];
+  for (int l = 0; l < packet.lanes; ++l) in_image[l] = 1;
+  if (px + width > context.width || py + height > context.height) {
+    for (int l = 0; l < packet.lanes; ++l) {
+      in_image[l] = px + l % width < context.width && py + l / width < context.height ? 1 : 0;
+    }
+  }
   for (std::size_t i = 0; i < static_cast<std::size_t>(packet.lanes); i += hn::Lanes(d)) {
     const V direction_x = hn::Load(d, packet.direction_x + i);
     const V direction_y = hn::Load(d, packet.direction_y + i);
@@ -69,13 +76,8 @@ inline void start_rays(const FrameContext& context, int px, int py, int width, i
                   direction_x, direction_y);
     const V first = hn::Ceil(hn::MulSub(range.near, inverse_step, half));
     const V last = hn::Floor(hn::MulSub(range.far, inverse_step, half));
-    alignas(64) double in_image[max_lanes];
-    for (std::size_t j = 0; j < hn::Lanes(d); ++j) {
-      const int l = static_cast<int>(i + j);
-      in_image[j] = px + l % width < context.width && py + l / width < context.height ? 1 : 0;
-    }
     const auto any = hn::And(hn::And(hn::Le(range.near, range.far), hn::Le(first, last)),
-                             hn::Gt(hn::Load(d, in_image), hn::Zero(d)));
+                             hn::Gt(hn::Load(d, in_image + i), hn::Zero(d)));
     const V relative_first = hn::Sub(first, first_plane),
             relative_last = hn::Sub(last, first_plane);
     begin = hn::Min(begin, hn::IfThenElse(any, relative_first, begin));

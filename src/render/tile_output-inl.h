@@ -30,11 +30,11 @@ inline SampleLayout make_layout(const FrameContext& context) {
 
 /// Samples of all rays, up to each ray's end.
 inline std::uint64_t count_samples(const RayState& rays) {
-  std::uint64_t samples = 0;
-  for (std::size_t l = 0; l < hn::Lanes(LaneTag()); ++l) {
-    samples += static_cast<std::uint64_t>(rays.last[l] - rays.first[l] + 1);
-  }
-  return samples;
+  const LaneTag d;
+  const hn::RebindToSigned<LaneTag> di;
+  const Lanes count = hn::Sub(hn::Load(d, rays.last), hn::Load(d, rays.first));
+  const auto counts = hn::Add(hn::ConvertTo(di, count), hn::Set(di, 1));
+  return static_cast<std::uint64_t>(hn::GetLane(hn::SumOfLanes(di, counts)));
 }
 
 /// Writes the colours of the packet whose top left pixel is (px, py).
