@@ -271,6 +271,28 @@ TEST(Engines, NoSeamBetweenShapesOfKernels) {
   check(s, "all sizes, lit");
 }
 
+TEST(Engines, SmallKernelsSeenThroughASlit) {
+  // Rays end above and below four rows of pixels, which the sweep takes together: what lies behind
+  // is seen by none of its neighbours. A unit is a pixel.
+  std::vector<Point3d> centers;
+  std::vector<float> radii;
+  for (double x = -32; x <= 32; x += 0.5) {
+    centers.insert(centers.end(), {{x, 12, 0}, {x, -8, 0}});
+    radii.insert(radii.end(), {4, 4});
+  }
+  for (double x = -30; x <= 30; x += 3) {
+    centers.push_back({x, 2, -20});
+    radii.push_back(1.45F);
+  }
+  PlainScene s = plain_scene(centers, 40);
+  s.scene.fields[0].radius = radii;
+  s.scene.fields[0].kernel.support_factor = 2;
+  s.scene.transfer_functions = {ramp(0.01, 1000)};
+  s.scene.camera.orthographic_height = 64;
+  s.scene.render.width = s.scene.render.height = 64;
+  check(s, "slit");
+}
+
 TEST(Engines, OneLitFieldAndFourUnlitOnesInTurn) {
   // As many channels in all: what a thread keeps from one frame to the next must fit both.
   PlainScene one = plain_scene({{0, 0, 0}, {1, 1, 0}, {-1, 1, 1}}, 10);
