@@ -67,12 +67,6 @@ struct GroupBox {
 inline constexpr int max_box_shape = 7;
 inline constexpr std::size_t num_box_shapes = max_box_shape * max_box_shape;
 
-HWY_INLINE std::size_t shape_of(const GroupBox& box) {
-  const int columns = std::min(box.columns(), max_box_shape);
-  const int rows = std::min(box.rows(), max_box_shape);
-  return static_cast<std::size_t>((columns - 1) * max_box_shape + rows - 1);
-}
-
 /// A gathered kernel that reaches one of the planes.
 struct BoxedKernel {
   std::uint32_t kernel_and_plane;  ///< the plane in the lowest bits
@@ -95,31 +89,36 @@ class PlaneKernels {
   /// Makes room for `count` more and what whole vectors write behind them.
   void reserve(std::size_t count) {
     if (size_ + count + max_lanes <= kernel_.size()) return;
-    kernel_.resize(2 * (size_ + count + max_lanes));
-    box_.resize(kernel_.size());
+    for (auto* array : {&kernel_, &box_, &shape_}) array->resize(2 * (size_ + count + max_lanes));
   }
 
-  /// Adds the lanes of `which`.
-  template <class DU>
-  HWY_INLINE void append(DU du, hn::Mask<DU> which, hn::Vec<DU> kernel_and_plane, hn::Vec<DU> box) {
+  /// Adds the lanes of `which`, with boxes of so many columns and rows.
+  template <class DU, class M, class V>
+  HWY_INLINE void append(DU du, M which, V kernel_and_plane, V box, V columns, V rows) {
+    const V most = hn::Set(du, std::uint32_t{max_box_shape}), one = hn::Set(du, 1);
+    const V shape = hn::Add(hn::Mul(hn::Sub(hn::Min(columns, most), one), most),
+                            hn::Sub(hn::Min(rows, most), one));
+    hn::StoreU(hn::Compress(shape, which), du, shape_.data() + size_);
     hn::StoreU(hn::Compress(kernel_and_plane, which), du, kernel_.data() + size_);
     hn::StoreU(hn::Compress(box, which), du, box_.data() + size_);
     size_ += hn::CountTrue(du, which);
   }
 
-  /// By shape, in each in the order in which they were appended.
+  /// By shape, in each in an order that depends on that in which they were appended alone. Every
+  /// fourth is counted by itself: a counter would wait for its last increment.
   void sort() {
     sorted_.resize(std::max(sorted_.size(), size_));
-    std::array<std::uint32_t, num_box_shapes> next{};
-    for (std::size_t i = 0; i < size_; ++i) ++next[shape_of(box_of(i))];
+    constexpr std::size_t ways = 4;
+    std::array<std::array<std::uint32_t, ways>, num_box_shapes> next{};
+    for (std::size_t i = 0; i < size_; ++i) ++next[shape_[i]][i % ways];
     std::uint32_t end = 0;
     for (std::size_t shape = 0; shape < num_box_shapes; ++shape) {
       begin_[shape] = end;
-      end += std::exchange(next[shape], end);
+      for (std::uint32_t& count : next[shape]) end += std::exchange(count, end);
     }
     begin_[num_box_shapes] = end;
     for (std::size_t i = 0; i < size_; ++i) {
-      sorted_[next[shape_of(box_of(i))]++] = {kernel_[i], box_of(i)};
+      sorted_[next[shape_[i]][i % ways]++] = {kernel_[i], std::bit_cast<GroupBox>(box_[i])};
     }
   }
 
@@ -131,9 +130,7 @@ class PlaneKernels {
   }
 
  private:
-  GroupBox box_of(std::size_t i) const { return std::bit_cast<GroupBox>(box_[i]); }
-
-  AlignedVector<std::uint32_t> kernel_, box_;
+  AlignedVector<std::uint32_t> kernel_, box_, shape_;
   std::size_t size_ = 0;
   std::vector<BoxedKernel> sorted_;
   std::array<std::uint32_t, num_box_shapes + 1> begin_{};
@@ -187,7 +184,9 @@ HWY_NOINLINE void find_boxes(const GatheredKernels& gathered, const AreaPlane& p
     const auto kernel = numbers_from(static_cast<std::uint32_t>(i));
     const auto kernel_and_plane = hn::Or(hn::ShiftLeft<BoxedKernel::plane_bits>(kernel),
                                          hn::Set(du, static_cast<std::uint32_t>(number)));
-    out.append(du, hn::RebindMask(du, any), kernel_and_plane, box);
+    const auto one = hn::Set(du, 1);
+    out.append(du, hn::RebindMask(du, any), kernel_and_plane, box,
+               hn::Add(hn::Sub(last_column, column), one), hn::Add(hn::Sub(last_row, row), one));
   }
 }
 
