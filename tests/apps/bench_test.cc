@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 
 #include "apps/command_line.h"
@@ -233,6 +234,25 @@ TEST_F(Bench, BuildComparesWithEmbreeWhereItIs) {
               std::min(row["embree_morton"]["build_s"].get<double>(),
                        row["embree_morton"]["again_s"].get<double>()),
               1e-9);
+}
+
+TEST_F(Bench, LatticeHasFourSizes) {
+  const Outcome outcome = measure("lattice");
+  EXPECT_EQ(outcome.err, "");
+  const auto rows = result("lattice")["rows"];
+  ASSERT_EQ(rows.size(), 14U);  // far and close, with two opacities but for the largest
+  std::set<std::size_t> sizes;
+  for (const auto& row : rows) {
+    sizes.insert(row["particles"].get<std::size_t>());
+    EXPECT_EQ(row["sweep"]["samples"], row["coherent"]["samples"]) << row;
+    EXPECT_NEAR(row["sweep_over_coherent"].get<double>(),
+                row["coherent"]["frame_ms"].get<double>() / row["sweep"]["frame_ms"].get<double>(),
+                1e-9);
+  }
+  EXPECT_EQ(sizes, (std::set<std::size_t>{27, 216, 1331, 19683}));
+  EXPECT_THAT(workspace_.read("out/bench/lattice.svg"), Not(HasSubstr("nan")));
+  EXPECT_THAT(failure(std::string("bench lattice --size 1024x1024 --memory 1") + data, 1),
+              HasSubstr("lattice: 81746504 particles need 4.9 GiB of memory, and there are 1.0"));
 }
 
 TEST_F(Bench, RadiiComparesWithEqualOnesThatGiveAsManyEvaluations) {

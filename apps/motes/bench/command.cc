@@ -30,6 +30,7 @@ constexpr const char* examples =
   build     build times and memory of the tree, beside Embree's
   fields    what more fields cost: particles shared out among them, or all in two
   limit     what part of the machine's peak the sweep reaches, and where the rest goes
+  lattice   frame times of lattices from 91 thousand to 82 million particles, unlit
   radii     time of a kernel evaluation where radii differ by orders of magnitude
   fig6      frames per second from a thousand to all particles of the cosmological box
   fig7      frames per second with rays that end early or late, and with passes of many samples
@@ -59,6 +60,7 @@ constexpr Benchmark benchmarks[] = {{"scenes", run_scenes},
                                     {"build", run_build},
                                     {"fields", run_fields, {"zeolite", "tryptophan", "anp3"}},
                                     {"limit", run_limit},
+                                    {"lattice", run_lattice, {}, 0},
                                     {"radii", run_radii, {}, 0},
                                     {"fig6", run_fig6, {"cosmology"}, 1},
                                     {"fig7", run_fig7, {"cosmology"}, 1},
