@@ -27,6 +27,7 @@
 #include "field/sweep_boxes-inl.h"
 #include "samples/column_buffer.h"
 #include "samples/lanes-inl.h"
+#include "samples/transpose-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace motes {
@@ -132,9 +133,9 @@ HWY_NOINLINE std::size_t find_thin_kernels(const AreaPlanes& planes, GatheredKer
   for (ThinKernels& list : out) list.start(gathered.size * num_depths);
   std::size_t others = 0;
   const int last_plane = planes.count - 1;
-  const float depth = planes.z[last_plane] - planes.z[0];
+  const float thickness = planes.z[last_plane] - planes.z[0];
   const Lanes near = hn::Set(d, planes.z[0]), far = hn::Set(d, planes.z[last_plane]);
-  const Lanes per_depth = hn::Set(d, depth > 0 ? 1 / depth : 0.0f);
+  const Lanes per_depth = hn::Set(d, thickness > 0 ? 1 / thickness : 0.0f);
   const Lanes planes_per_depth = hn::Mul(per_depth, hn::Set(d, static_cast<float>(last_plane)));
   const Lanes end = hn::Set(d, static_cast<float>(AreaBuffer::size - 1));
   // A quantity that is linear in depth, at fraction t of the way from the first plane to the last.
@@ -311,21 +312,6 @@ void sum_columns(const GatheredKernels& gathered, const ThinLists& lists, const 
     add_thin_kernels<thin_sizes[kList], C>(gathered, lists[kList], planes, live, layout, buffer,
                                            counts);
   });
-}
-
-/// In each 128 bits four vectors become their transpose: vector j then has the j-th numbers.
-HWY_INLINE void transpose_fours(LaneTag d, Lanes& v0, Lanes& v1, Lanes& v2, Lanes& v3) {
-  const hn::RepartitionToWide<LaneTag> dw;
-  const auto pairs = [&](Lanes a, Lanes b)
-                         HWY_ATTR { return hn::BitCast(dw, hn::InterleaveLower(d, a, b)); };
-  const auto upper_pairs = [&](Lanes a, Lanes b)
-                               HWY_ATTR { return hn::BitCast(dw, hn::InterleaveUpper(d, a, b)); };
-  const auto a = pairs(v0, v1), b = pairs(v2, v3);
-  const auto c = upper_pairs(v0, v1), e = upper_pairs(v2, v3);
-  v0 = hn::BitCast(d, hn::InterleaveLower(dw, a, b));
-  v1 = hn::BitCast(d, hn::InterleaveUpper(dw, a, b));
-  v2 = hn::BitCast(d, hn::InterleaveLower(dw, c, e));
-  v3 = hn::BitCast(d, hn::InterleaveUpper(dw, c, e));
 }
 
 /// num_lanes vectors become their transpose.

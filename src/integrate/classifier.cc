@@ -58,6 +58,7 @@ Classifier compile_transfer_function(const TransferFunction& function, double va
   c.num_segments = static_cast<int>(segments);
   c.row_size = (segments + max_lanes - 1) / max_lanes * max_lanes;
   c.table.assign(Classifier::num_rows * c.row_size + max_lanes, 0.0f);
+  c.records.resize(Classifier::record_size * segments);
   c.inverse_spacing = static_cast<float>(std::min(inverse_spacing_of(knots), 1e38));
   for (std::size_t s = 0; s < segments; ++s) {
     const Knot &a = knots[s], &b = knots[std::min(s + 1, knots.size() - 1)];
@@ -71,6 +72,9 @@ Classifier compile_transfer_function(const TransferFunction& function, double va
     for (int i = 0; i < 4; ++i) {
       entry(Classifier::base + i) = static_cast<float>(a.values[i]);
       entry(Classifier::rise + i) = static_cast<float>(b.values[i] - a.values[i]);
+      float* const record = &c.records[Classifier::record_size * s + static_cast<std::size_t>(i)];
+      record[0] = entry(Classifier::base + i);
+      record[4] = entry(Classifier::rise + i);
     }
   }
 

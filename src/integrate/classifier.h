@@ -25,6 +25,9 @@ struct Classifier {
   std::size_t row_size = 0;    ///< whole vectors
   AlignedVector<float> table;  ///< rows, and room to load one more vector behind the last
   const float* row(int i) const { return table.data() + static_cast<std::size_t>(i) * row_size; }
+  /// The values again, those of a segment together: four at its begin, then their rises.
+  static constexpr std::size_t record_size = 8;
+  AlignedVector<float> records;
 
   Visibility visibility{};  ///< buffer's values that have extinction
   float max_depth = 0;      ///< largest extinction times step

@@ -22,6 +22,7 @@
 #include "integrate/shading.h"
 #include "samples/lanes-inl.h"
 #include "samples/samples.h"
+#include "samples/transpose-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace motes {
@@ -73,7 +74,7 @@ HWY_INLINE void to_opacity(LaneTag d, float largest, std::array<Lanes, N>& x) {
 }
 
 /// How a table is read: a single segment is a broadcast, a row of one or two vectors a permutation
-/// (of two only with AVX-512), longer ones are gathered.
+/// (of two only with AVX-512), of longer ones the record of each lane's segment is loaded.
 enum class TableKind { one_segment, one_vector, two_vectors, many };
 
 /// The simplest that does for all of them.
@@ -101,7 +102,8 @@ HWY_INLINE Lanes look_up(LaneTag d, const Classifier& c, int row,
     return hn::Set(d, entries[0]);
   } else if constexpr (kKind == TableKind::one_vector) {
 #if HWY_TARGET <= HWY_AVX3
-    return Lanes{_mm512_permutexvar_ps(segment.raw, hn::Load(d, entries).raw)};
+    // Under a mask of all: g++ 12 warns of what the other form leaves open.
+    return Lanes{_mm512_maskz_permutexvar_ps(0xffff, segment.raw, hn::Load(d, entries).raw)};
 #else
     return hn::TableLookupLanes(hn::Load(d, entries), hn::IndicesFromVec(d, segment));
 #endif
@@ -191,6 +193,40 @@ template <TableKind kKind>
 HWY_INLINE Lanes read_table(LaneTag d, const Classifier& c, int i, const TablePlace& place) {
   return hn::MulAdd(place.fraction, look_up<kKind>(d, c, Classifier::rise + i, place.segment),
                     look_up<kKind>(d, c, Classifier::base + i, place.segment));
+}
+
+/// Four floats of each lane: lane l's begin at from + offset[l]. Vector i gets the i-th.
+HWY_INLINE void load_fours(LaneTag d, const float* from, const std::int32_t* offset,
+                           std::array<Lanes, 4>& out) {
+  const hn::FixedTag<float, 4> four;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const auto part = [&](std::size_t block)
+                          HWY_ATTR { return hn::Load(four, from + offset[4 * block + i]); };
+#if HWY_TARGET <= HWY_AVX3
+    const hn::Half<LaneTag> half;
+    out[i] =
+        hn::Combine(d, hn::Combine(half, part(3), part(2)), hn::Combine(half, part(1), part(0)));
+#elif HWY_TARGET <= HWY_AVX2
+    out[i] = hn::Combine(d, part(1), part(0));
+#else
+    out[i] = part(0);
+#endif
+  }
+  transpose_fours(d, out[0], out[1], out[2], out[3]);
+}
+
+/// Red, green, blue and extinction times step at a place of the table.
+HWY_INLINE std::array<Lanes, 4> read_record(LaneTag d, const Classifier& c,
+                                            const TablePlace& place) {
+  const hn::RebindToSigned<LaneTag> di;
+  static_assert(Classifier::record_size == 8);
+  alignas(64) std::int32_t offset[max_lanes];
+  hn::Store(hn::ShiftLeft<3>(place.segment), di, offset);
+  std::array<Lanes, 4> base, rise;
+  load_fours(d, c.records.data(), offset, base);
+  load_fours(d, c.records.data() + 4, offset, rise);
+  for (std::size_t i = 0; i < 4; ++i) base[i] = hn::MulAdd(place.fraction, rise[i], base[i]);
+  return base;
 }
 
 /// The classifier's argument for a value of the buffer, with a logarithmic scale. Finite also where
@@ -409,7 +445,16 @@ HWY_INLINE void classify(LaneTag d, const BlockShading& shading, const SamplesAt
   unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR {
     places[n] = find_segment<kKind>(d, classifier_of(n), argument[n]);
   });
+  if constexpr (kKind == TableKind::many) {
+    unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR {
+      const std::array<Lanes, 4> values = read_record(d, classifier_of(n), places[n]);
+      for (std::size_t i = 0; i < 3; ++i) out.color[i][n] = values[i];
+      out.opacity[n] = values[3];
+    });
+  }
+  // Colours last: they need not be kept then while opacities are worked out.
   const auto read = [&](int i, std::array<Lanes, N>& values) MOTES_INLINE HWY_ATTR {
+    if constexpr (kKind == TableKind::many) return;
     unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR {
       values[n] = read_table<kKind>(d, classifier_of(n), i, places[n]);
     });
