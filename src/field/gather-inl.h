@@ -10,9 +10,11 @@
 #include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
-#include <cmath>
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <numbers>
 
 #include "core/aligned.h"
 #include "field/sampling-inl.h"

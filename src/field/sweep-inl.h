@@ -221,8 +221,7 @@ class LiveGroups {
  public:
   GroupBits row(int i) const { return rows_[static_cast<std::size_t>(i)]; }
 
-  /// Sets all rows; those behind the area's have none.
-  void set(const std::array<GroupBits, AreaBuffer::padded>& rows) {
+  void set(const std::array<GroupBits, AreaBuffer::groups>& rows) {
     rows_ = rows;
     for (std::size_t row = 0; row < AreaBuffer::groups; ++row) {
       std::uint16_t count = 0;
@@ -240,7 +239,7 @@ class LiveGroups {
   }
 
  private:
-  std::array<GroupBits, AreaBuffer::padded> rows_{};  ///< a bit each
+  std::array<GroupBits, AreaBuffer::groups> rows_{};  ///< a bit each
   /// How many lie above and to the left of the corner of a group.
   std::uint16_t before_[AreaBuffer::groups + 1][AreaBuffer::groups + 1] = {};
 };
@@ -257,18 +256,56 @@ struct PlaneSamples {
   }
 };
 
+/// Columns of the box's groups that a kernel may reach in each row of groups, a bit each.
+struct ReachedColumns {
+  alignas(64) GroupBits of_row[AreaBuffer::groups];
+
+  HWY_INLINE void find(LaneTag d, const SweptKernel& kernel, float support_sq,
+                       const GroupBox& box) {
+    const hn::RebindToSigned<LaneTag> di;
+    const hn::RebindToUnsigned<LaneTag> du;
+    constexpr float size = AreaBuffer::group_size, middle = 0.5f * (size - 1);
+    const Lanes disc_sq = hn::Set(d, support_sq - kernel.dz * kernel.dz);
+    const Lanes per_column = hn::Set(d, 1 / kernel.dx);
+    const Lanes center = hn::Set(d, -kernel.x / kernel.dx);
+    const Lanes end = hn::Set(d, static_cast<float>(box.columns()) * size - 1);
+    // Rounding of the square root and of places, in pixels.
+    const Lanes slack = hn::Set(d, 1e-3f), stretch = hn::Mul(per_column, hn::Set(d, 1.0005f));
+    for (int row = 0; row < box.rows(); row += num_lanes) {
+      // The group's row of samples that is nearest to the centre, or between its rows.
+      const Lanes number = hn::Iota(d, static_cast<float>(row));
+      const Lanes y = hn::MulAdd(number, hn::Set(d, size * kernel.dy),
+                                 hn::Set(d, kernel.y + middle * kernel.dy));
+      const Lanes nearest =
+          hn::Max(hn::Sub(hn::Abs(y), hn::Set(d, middle * std::abs(kernel.dy))), hn::Zero(d));
+      const Lanes half_sq = hn::Max(hn::NegMulAdd(nearest, nearest, disc_sq), hn::Set(d, 1e-30f));
+      const Lanes half =
+          hn::MulAdd(hn::Mul(half_sq, hn::ApproximateReciprocalSqrt(half_sq)), stretch, slack);
+      const auto group_at = [&](Lanes pixel) HWY_ATTR {
+        const Lanes inside = hn::Min(hn::Max(pixel, hn::Zero(d)), end);
+        return hn::BitCast(du, hn::ConvertTo(di, hn::Mul(inside, hn::Set(d, 1 / size))));
+      };
+      const auto first = group_at(hn::Ceil(hn::Sub(center, half)));
+      const auto last = group_at(hn::Floor(hn::Add(center, half)));
+      hn::Store(hn::Sub(hn::Shl(hn::Set(du, 2), last), hn::Shl(hn::Set(du, 1), first)), du,
+                of_row + row);
+    }
+  }
+};
+
 /// Some kernels with their factors: worked out for all before the first is added, they do not wait
-/// for each other. For boxes of at most kColumns columns.
+/// for each other. For boxes of kColumns columns, or of any size if these are all of the area's.
 template <int kColumns, class C>
 struct KernelBatch {
+  static constexpr bool kWide = kColumns == AreaBuffer::groups;
   static constexpr std::size_t most = 16;
   struct Member {
     GroupBox box;
-    float cut, disc_sq;
+    float cut;
     float* samples;                  ///< of the box's first group: the field's channel 0
     AreaBuffer::PlaneBits* touched;  ///< of the box's first group, the field's
     AreaBuffer::PlaneBits bit;       ///< the plane's
-    SweptKernel kernel;
+    ReachedColumns reached;          ///< of wide ones
     BoxFactors<kColumns, AreaBuffer::groups, C> factors;
   };
   Member members[most];
@@ -281,17 +318,16 @@ struct KernelBatch {
     for (; !list.empty() && count < most; list = list.subspan(1)) {
       const GroupBox box = list[0].box;
       if (!samples.live.any_in(box)) continue;
-      const std::size_t k = list[0].kernel(), plane = list[0].plane();
+      const std::size_t k = list[0].kernel, plane = list[0].plane;
       Member& out = members[count++];
       out.box = box;
       out.cut = gathered.cut[k];
       out.samples = samples.at(box.row, box.column, gathered.field[k], plane);
       out.touched = samples.buffer.touched(box.row, box.column) + gathered.field[k];
       out.bit = AreaBuffer::PlaneBits{1} << plane;
-      out.kernel = place_kernel(gathered, k, samples.planes[plane], box);
-      out.disc_sq = gathered.support_sq[k] - out.kernel.dz * out.kernel.dz;
-      const int columns = kColumns < AreaBuffer::groups ? kColumns : box.columns();
-      out.factors.fill(d, out.kernel, columns, box.rows());
+      const SweptKernel kernel = place_kernel(gathered, k, samples.planes[plane], box);
+      out.factors.fill(d, kernel, kWide ? box.columns() : kColumns, box.rows());
+      if constexpr (kWide) out.reached.find(d, kernel, gathered.support_sq[k], box);
     }
   }
 };
@@ -322,50 +358,13 @@ HWY_NOINLINE void add_narrow_kernels(LaneTag d, const GatheredKernels& gathered,
                            group + static_cast<std::size_t>(column) * group_floats, block_floats);
         }
         group += row_floats;
-        touched += AreaBuffer::padded * num_fields;
+        touched += AreaBuffer::groups * num_fields;
       }
       counts.carried_out +=
           static_cast<std::uint64_t>(kernel.box.rows()) * kColumns * AreaBuffer::group_pixels;
     }
   }
 }
-
-/// Columns of the box's groups that a kernel may reach in each row of groups, a bit each.
-struct ReachedColumns {
-  alignas(64) GroupBits of_row[AreaBuffer::groups];
-
-  HWY_INLINE void find(LaneTag d, const SweptKernel& kernel, float kernel_disc_sq,
-                       const GroupBox& box) {
-    const hn::RebindToSigned<LaneTag> di;
-    const hn::RebindToUnsigned<LaneTag> du;
-    constexpr float size = AreaBuffer::group_size, middle = 0.5f * (size - 1);
-    const Lanes disc_sq = hn::Set(d, kernel_disc_sq);
-    const Lanes per_column = hn::Set(d, 1 / kernel.dx);
-    const Lanes center = hn::Set(d, -kernel.x / kernel.dx);
-    const Lanes end = hn::Set(d, static_cast<float>(box.columns()) * size - 1);
-    // Rounding of the square root and of places, in pixels.
-    const Lanes slack = hn::Set(d, 1e-3f), stretch = hn::Mul(per_column, hn::Set(d, 1.0005f));
-    for (int row = 0; row < box.rows(); row += num_lanes) {
-      // The group's row of samples that is nearest to the centre, or between its rows.
-      const Lanes number = hn::Iota(d, static_cast<float>(row));
-      const Lanes y = hn::MulAdd(number, hn::Set(d, size * kernel.dy),
-                                 hn::Set(d, kernel.y + middle * kernel.dy));
-      const Lanes nearest =
-          hn::Max(hn::Sub(hn::Abs(y), hn::Set(d, middle * std::abs(kernel.dy))), hn::Zero(d));
-      const Lanes half_sq = hn::Max(hn::NegMulAdd(nearest, nearest, disc_sq), hn::Set(d, 1e-30f));
-      const Lanes half =
-          hn::MulAdd(hn::Mul(half_sq, hn::ApproximateReciprocalSqrt(half_sq)), stretch, slack);
-      const auto group_at = [&](Lanes pixel) HWY_ATTR {
-        const Lanes inside = hn::Min(hn::Max(pixel, hn::Zero(d)), end);
-        return hn::BitCast(du, hn::ConvertTo(di, hn::Mul(inside, hn::Set(d, 1 / size))));
-      };
-      const auto first = group_at(hn::Ceil(hn::Sub(center, half)));
-      const auto last = group_at(hn::Floor(hn::Add(center, half)));
-      hn::Store(hn::Sub(hn::Shl(hn::Set(du, 2), last), hn::Shl(hn::Set(du, 1), first)), du,
-                of_row + row);
-    }
-  }
-};
 
 /// Adds kernels with boxes of any size to the groups that they reach, but where no ray is under
 /// way.
@@ -382,11 +381,9 @@ HWY_NOINLINE void add_wide_kernels(LaneTag d, const GatheredKernels& gathered,
     for (std::size_t i = 0; i < batch.count; ++i) {
       const auto& kernel = batch.members[i];
       const GroupBox box = kernel.box;
-      ReachedColumns reached;
-      reached.find(d, kernel.kernel, kernel.disc_sq, box);
       for (int row = 0; row < box.rows(); ++row) {
         const GroupBits reached_live =
-            reached.of_row[row] & samples.live.row(box.row + row) >> box.column;
+            kernel.reached.of_row[row] & samples.live.row(box.row + row) >> box.column;
         if (reached_live == 0) continue;
         // All between the first and the last, which is simpler to count than those that are live.
         const int first = std::countr_zero(reached_live);
@@ -397,7 +394,7 @@ HWY_NOINLINE void add_wide_kernels(LaneTag d, const GatheredKernels& gathered,
                        static_cast<std::size_t>(first) * group_floats;
         AreaBuffer::PlaneBits* touched =
             kernel.touched +
-            static_cast<std::size_t>(row * AreaBuffer::padded + first) * num_fields;
+            static_cast<std::size_t>(row * AreaBuffer::groups + first) * num_fields;
         for (int column = first; column < first + count; ++column) {
           *touched |= kernel.bit;
           counts.inside_support +=

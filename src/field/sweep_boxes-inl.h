@@ -12,7 +12,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -69,13 +68,8 @@ inline constexpr std::size_t num_box_shapes = max_box_shape * max_box_shape;
 
 /// A gathered kernel that reaches one of the planes.
 struct BoxedKernel {
-  std::uint32_t kernel_and_plane;  ///< the plane in the lowest bits
+  std::uint32_t kernel, plane;
   GroupBox box;
-
-  static constexpr int plane_bits = 4;
-  static_assert(AreaBuffer::max_planes <= 1 << plane_bits);
-  std::size_t kernel() const { return kernel_and_plane >> plane_bits; }
-  std::size_t plane() const { return kernel_and_plane & ((1u << plane_bits) - 1); }
 };
 
 /// Kernels that reach some planes, first as they are found, then by the shapes of their boxes:
@@ -89,23 +83,25 @@ class PlaneKernels {
   /// Makes room for `count` more and what whole vectors write behind them.
   void reserve(std::size_t count) {
     if (size_ + count + max_lanes <= kernel_.size()) return;
-    for (auto* array : {&kernel_, &box_, &shape_}) array->resize(2 * (size_ + count + max_lanes));
+    const std::size_t room = 2 * (size_ + count + max_lanes);
+    for (auto* array : {&kernel_, &plane_, &box_, &shape_}) array->resize(room);
   }
 
   /// Adds the lanes of `which`, with boxes of so many columns and rows.
   template <class DU, class M, class V>
-  HWY_INLINE void append(DU du, M which, V kernel_and_plane, V box, V columns, V rows) {
+  HWY_INLINE void append(DU du, M which, V kernel, std::uint32_t plane, V box, V columns, V rows) {
     const V most = hn::Set(du, std::uint32_t{max_box_shape}), one = hn::Set(du, 1);
     const V shape = hn::Add(hn::Mul(hn::Sub(hn::Min(columns, most), one), most),
                             hn::Sub(hn::Min(rows, most), one));
     hn::StoreU(hn::Compress(shape, which), du, shape_.data() + size_);
-    hn::StoreU(hn::Compress(kernel_and_plane, which), du, kernel_.data() + size_);
+    hn::StoreU(hn::Compress(kernel, which), du, kernel_.data() + size_);
+    hn::StoreU(hn::Set(du, plane), du, plane_.data() + size_);
     hn::StoreU(hn::Compress(box, which), du, box_.data() + size_);
     size_ += hn::CountTrue(du, which);
   }
 
-  /// By shape, in each in an order that depends on that in which they were appended alone. Every
-  /// fourth is counted by itself: a counter would wait for its last increment.
+  /// Sorts by shape. The order within a shape depends only on the order of appending. Four counters
+  /// a shape, taken in turn, since each would wait for its last increment.
   void sort() {
     sorted_.resize(std::max(sorted_.size(), size_));
     constexpr std::size_t ways = 4;
@@ -118,7 +114,8 @@ class PlaneKernels {
     }
     begin_[num_box_shapes] = end;
     for (std::size_t i = 0; i < size_; ++i) {
-      sorted_[next[shape_[i]][i % ways]++] = {kernel_[i], std::bit_cast<GroupBox>(box_[i])};
+      sorted_[next[shape_[i]][i % ways]++] = {kernel_[i], plane_[i],
+                                              std::bit_cast<GroupBox>(box_[i])};
     }
   }
 
@@ -130,7 +127,7 @@ class PlaneKernels {
   }
 
  private:
-  AlignedVector<std::uint32_t> kernel_, box_, shape_;
+  AlignedVector<std::uint32_t> kernel_, plane_, box_, shape_;
   std::size_t size_ = 0;
   std::vector<BoxedKernel> sorted_;
   std::array<std::uint32_t, num_box_shapes + 1> begin_{};
@@ -158,7 +155,6 @@ HWY_NOINLINE void find_boxes(const GatheredKernels& gathered, const AreaPlane& p
   const LaneTag d;
   const hn::RebindToSigned<LaneTag> di;
   const hn::RebindToUnsigned<LaneTag> du;
-  assert(gathered.size >> (32 - BoxedKernel::plane_bits) == 0);
   out.reserve(gathered.size);
   // Rounding of the square root and of places, in pixels.
   const Lanes slack = hn::Set(d, 1e-3f), stretch = hn::Set(d, 1.0005f);
@@ -182,10 +178,8 @@ HWY_NOINLINE void find_boxes(const GatheredKernels& gathered, const AreaPlane& p
     const auto box = hn::Or(hn::Or(column, hn::ShiftLeft<8>(row)),
                             hn::Or(hn::ShiftLeft<16>(last_column), hn::ShiftLeft<24>(last_row)));
     const auto kernel = numbers_from(static_cast<std::uint32_t>(i));
-    const auto kernel_and_plane = hn::Or(hn::ShiftLeft<BoxedKernel::plane_bits>(kernel),
-                                         hn::Set(du, static_cast<std::uint32_t>(number)));
     const auto one = hn::Set(du, 1);
-    out.append(du, hn::RebindMask(du, any), kernel_and_plane, box,
+    out.append(du, hn::RebindMask(du, any), kernel, static_cast<std::uint32_t>(number), box,
                hn::Add(hn::Sub(last_column, column), one), hn::Add(hn::Sub(last_row, row), one));
   }
 }

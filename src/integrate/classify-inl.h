@@ -1,4 +1,4 @@
-// Classifies and lights samples, some of one field side by side. Included once per instruction set.
+// Classifies and lights samples, some side by side. Included once per instruction set.
 #if defined(MOTES_INTEGRATE_CLASSIFY_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef MOTES_INTEGRATE_CLASSIFY_INL_H_
 #undef MOTES_INTEGRATE_CLASSIFY_INL_H_
@@ -14,7 +14,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <iterator>
 #include <limits>
 #include <vector>
 
@@ -239,8 +238,9 @@ HWY_NOINLINE Lanes logarithmic_argument(LaneTag d, const Classifier& c, Lanes va
                         hn::Set(d, std::numeric_limits<float>::lowest()));
 }
 
-/// x^power for x in [0, 1], power > 0 no whole number.
-HWY_NOINLINE Lanes broken_power(LaneTag d, Lanes x, float power) {
+/// x^power for x in [0, 1], power >= 0.
+HWY_NOINLINE Lanes general_power(LaneTag d, Lanes x, float power) {
+  if (power == 0) return hn::Set(d, 1.0f);
   const Lanes tiny = hn::Set(d, std::numeric_limits<float>::min());
   const Lanes exponent = hn::Mul(hn::Set(d, power), hn::Log(d, hn::Max(x, tiny)));
   return hn::IfThenZeroElse(hn::Lt(x, tiny), hn::Exp(d, hn::Max(exponent, hn::Set(d, -86.0f))));
@@ -263,11 +263,11 @@ HWY_INLINE void raise_to_odd(LaneTag, unsigned power, std::array<Lanes, N>& x) {
   }
 }
 
-/// x^power for x in [0, 1], power > 0. kPlain: is_plain_power().
+/// x^power for x in [0, 1], power >= 0. kPlain: is_plain_power().
 template <bool kPlain, std::size_t N>
 HWY_INLINE void raise(LaneTag d, float power, std::array<Lanes, N>& x) {
   if (!kPlain && !is_plain_power(power)) {
-    for (Lanes& each : x) each = broken_power(d, each, power);
+    for (Lanes& each : x) each = general_power(d, each, power);
     return;
   }
   auto left = static_cast<unsigned>(power);
@@ -417,7 +417,8 @@ struct Contributions {
   Light<N> light;                 ///< with gradients
 };
 
-/// Nothing is needed that takes a call: no logarithm, no opacity of thick samples, no broken power.
+/// Nothing is needed that takes a call: no logarithm, no opacity of thick samples, no power
+/// but is_plain_power().
 /// Registers need not be kept for it then.
 inline bool is_plain(const FrameShading& frame) {
   return is_plain_power(frame.constants.shininess) && frame.max_depth <= 1 &&

@@ -72,20 +72,21 @@ struct SeenSamples {
 /// Rays of a block on their way through a slab, samples counted from its begin.
 struct BlockRays {
   Lanes first, last;
-  LaneMask alive;                ///< have samples in the slab and have not ended
-  Lanes color[3], transparency;  ///< so far
-  Lanes highlight;               ///< light that is white, before the factor for specular light
+  LaneMask alive;         ///< have samples in the slab and have not ended
+  Lanes color[3], alpha;  ///< so far
+  Lanes highlight;        ///< light that is white, before the factor for specular light
   bool any_ended = false;
 
   /// Lets `rays` through a sample; what they see of it.
-  HWY_INLINE Lanes pass(LaneTag, LaneMask rays, Lanes opacity) {
+  HWY_INLINE Lanes pass(LaneTag d, LaneMask rays, Lanes opacity) {
+    const Lanes transparency = hn::Sub(hn::Set(d, 1.0f), alpha);
     const Lanes weight = hn::IfThenElseZero(rays, hn::Mul(transparency, opacity));
-    transparency = hn::Sub(transparency, weight);
+    alpha = hn::Add(alpha, weight);
     return weight;
   }
 
-  HWY_INLINE LaneMask opaque(LaneTag, Lanes least_transparency) const {
-    return hn::And(alive, hn::Lt(transparency, least_transparency));
+  HWY_INLINE LaneMask opaque(LaneTag, Lanes termination) const {
+    return hn::And(alive, hn::Gt(alpha, termination));
   }
 
   /// Adds what of a field's sample is seen: its part of what rays get, in the n-th place of `from`.
@@ -103,8 +104,8 @@ struct BlockRays {
   }
 
   /// Ends rays that are opaque enough after all fields of a sample; false if none goes on.
-  HWY_INLINE bool end_opaque(LaneTag d, Lanes least_transparency, int sample) {
-    const LaneMask ends = opaque(d, least_transparency);
+  HWY_INLINE bool end_opaque(LaneTag d, Lanes termination, int sample) {
+    const LaneMask ends = opaque(d, termination);
     if (HWY_LIKELY(hn::AllFalse(d, ends))) return true;
     last = hn::IfThenElse(ends, hn::Set(d, static_cast<float>(sample)), last);
     alive = hn::AndNot(ends, alive);
@@ -123,7 +124,7 @@ struct BlockRays {
 template <bool kGradients, std::size_t N>
 HWY_INLINE bool composite_in_turn(LaneTag d, const FrameShading& frame, const SeenSamples& seen,
                                   std::size_t first, const Contributions<N>& samples,
-                                  Lanes least_transparency, BlockRays& rays) {
+                                  Lanes termination, BlockRays& rays) {
   bool go_on = true;
   unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR {
     if (first + n >= seen.count || !go_on) return;
@@ -132,7 +133,7 @@ HWY_INLINE bool composite_in_turn(LaneTag d, const FrameShading& frame, const Se
     const LaneMask add = HWY_UNLIKELY(frame.zero_shows) ? rays.alive_at(d, sample) : rays.alive;
     const Lanes weight = rays.pass(d, add, samples.opacity[n]);
     rays.add<kGradients>(d, frame.constants, samples, n, weight);
-    if (seen.ends_sample(first + n)) go_on = rays.end_opaque(d, least_transparency, sample);
+    if (seen.ends_sample(first + n)) go_on = rays.end_opaque(d, termination, sample);
   });
   return go_on;
 }
@@ -141,15 +142,15 @@ HWY_INLINE bool composite_in_turn(LaneTag d, const FrameShading& frame, const Se
 /// often so; else changes nothing and returns false.
 template <bool kGradients, std::size_t N>
 HWY_INLINE bool composite_unended(LaneTag d, const FrameShading& frame,
-                                  const Contributions<N>& samples, Lanes least_transparency,
+                                  const Contributions<N>& samples, Lanes termination,
                                   BlockRays& rays) {
   BlockRays after = rays;
   std::array<Lanes, N> weight;
   unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR {
     weight[n] = after.pass(d, rays.alive, samples.opacity[n]);
   });
-  if (HWY_UNLIKELY(!hn::AllFalse(d, after.opaque(d, least_transparency)))) return false;
-  rays.transparency = after.transparency;
+  if (HWY_UNLIKELY(!hn::AllFalse(d, after.opaque(d, termination)))) return false;
+  rays.alpha = after.alpha;
   unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR {
     rays.add<kGradients>(d, frame.constants, samples, n, weight[n]);
   });
@@ -161,7 +162,7 @@ template <bool kGradients, bool kPlain, bool kOneField, TableKind kKind>
 HWY_NOINLINE void add_seen(LaneTag d, const BlockShading& shading, const SlabSamples& samples,
                            const SeenSamples& seen, BlockRays& rays) {
   const FrameShading& frame = shading.frame;
-  const Lanes least_transparency = hn::Set(d, 1 - frame.constants.termination_opacity);
+  const Lanes termination = hn::Set(d, frame.constants.termination_opacity);
   // False if no ray goes on.
   const auto add_some = [&]<std::size_t N>(std::size_t first) HWY_ATTR {
     SamplesAtOnce<N> some;
@@ -173,10 +174,10 @@ HWY_NOINLINE void add_seen(LaneTag d, const BlockShading& shading, const SlabSam
     Contributions<N> out;
     classify<kGradients, kPlain, kOneField, kKind>(d, shading, some, out);
     if (HWY_LIKELY(first + N <= seen.count && !frame.zero_shows) &&
-        composite_unended<kGradients>(d, frame, out, least_transparency, rays)) {
+        composite_unended<kGradients>(d, frame, out, termination, rays)) {
       return true;
     }
-    return composite_in_turn<kGradients>(d, frame, seen, first, out, least_transparency, rays);
+    return composite_in_turn<kGradients>(d, frame, seen, first, out, termination, rays);
   };
   for (std::size_t i = 0; i < seen.count; i += samples_at_once) {
     const bool go_on = seen.count - i > samples_at_once / 2
@@ -212,7 +213,7 @@ class Integrator {
     block.color[0] = hn::Load(d, rays.r);
     block.color[1] = hn::Load(d, rays.g);
     block.color[2] = hn::Load(d, rays.b);
-    block.transparency = hn::Load(d, rays.transparency);
+    block.alpha = hn::Load(d, rays.a);
     block.highlight = hn::Zero(d);
     add_seen_(d, BlockShading(d, frame_, rays), samples,
               SeenSamples(visible, frame_.classifiers.size()), block);
@@ -225,7 +226,7 @@ class Integrator {
     hn::Store(block.color[0], d, rays.r);
     hn::Store(block.color[1], d, rays.g);
     hn::Store(block.color[2], d, rays.b);
-    hn::Store(block.transparency, d, rays.transparency);
+    hn::Store(block.alpha, d, rays.a);
   }
 
   /// The same for any number of samples of which it is not known yet which may be seen.

@@ -91,8 +91,7 @@ inline void start_rays(const FrameContext& context, int px, int py, int width, i
     store(hn::Mul(direction_x, half_to_eye), rays.half_to_eye[0] + i);
     store(hn::Mul(direction_y, half_to_eye), rays.half_to_eye[1] + i);
     store(half_to_eye, rays.half_to_eye[2] + i);
-    for (float* channel : {rays.r, rays.g, rays.b}) store(hn::Zero(d), channel + i);
-    store(hn::Set(d, 1.0), rays.transparency + i);
+    for (float* channel : {rays.r, rays.g, rays.b, rays.a}) store(hn::Zero(d), channel + i);
   }
   rays.begin = static_cast<SampleIndex>(hn::GetLane(hn::MinOfLanes(d, begin)));
   rays.end = static_cast<SampleIndex>(hn::GetLane(hn::MaxOfLanes(d, end)));

@@ -10,6 +10,7 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <climits>
 #include <cstdint>
@@ -57,7 +58,7 @@ inline constexpr std::size_t kernels_at_once = 1024;
 inline int planes_at_once(const FrameContext& context, const SampleLayout& layout) {
   const std::size_t plane_bytes =
       layout.floats_per_sample() * sizeof(float) *
-      std::size_t{AreaBuffer::padded * AreaBuffer::padded * group_blocks};
+      std::size_t{AreaBuffer::groups * AreaBuffer::groups * group_blocks};
   return std::clamp(static_cast<int>(batch_bytes / plane_bytes), 1,
                     std::min(context.samples_per_pass, AreaBuffer::max_planes));
 }
@@ -127,7 +128,7 @@ class AreaSweep {
 
   /// Finds the groups that have rays under way on some of the planes; true if any has.
   bool find_live(const Slab& slab) {
-    std::array<GroupBits, AreaBuffer::padded> rows{};
+    std::array<GroupBits, AreaBuffer::groups> rows{};
     GroupBits any = 0;
     for (int row = 0; row < AreaBuffer::groups; ++row) {
       GroupBits bits = 0;
@@ -218,8 +219,8 @@ class AreaSweep {
 
   /// Pass 2 for the planes of the buffer, which is zero again afterwards.
   void integrate_area(const Slab& batch) {
-    for (int row = 0; row < AreaBuffer::padded; ++row) {
-      for (int column = 0; column < AreaBuffer::padded; ++column) {
+    for (int row = 0; row < AreaBuffer::groups; ++row) {
+      for (int column = 0; column < AreaBuffer::groups; ++column) {
         const bool live = (live_.row(row) >> column & 1) != 0;
         if (live && find_visible(row, column, batch.count)) integrate_group(row, column, batch);
         clear(row, column);

@@ -41,9 +41,8 @@ inline std::uint64_t count_samples(const RayState& rays) {
 inline void store_pixels(const RayState& rays, int px, int py, int width, Framebuffer& image) {
   const LaneTag d;
   alignas(64) float rgba[4 * max_lanes];
-  const Lanes alpha = hn::Sub(hn::Set(d, 1.0f), hn::Load(d, rays.transparency));
-  hn::StoreInterleaved4(hn::Load(d, rays.r), hn::Load(d, rays.g), hn::Load(d, rays.b), alpha, d,
-                        rgba);
+  hn::StoreInterleaved4(hn::Load(d, rays.r), hn::Load(d, rays.g), hn::Load(d, rays.b),
+                        hn::Load(d, rays.a), d, rgba);
   const int columns = std::min(width, image.width - px);
   const int rows = std::min(static_cast<int>(hn::Lanes(d)) / width, image.height - py);
   for (int row = 0; row < rows; ++row) {

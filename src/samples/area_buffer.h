@@ -13,14 +13,12 @@ namespace motes {
 
 /// Samples of 64 x 64 pixels: [row of groups][column of
 /// groups][plane][block][field][channel][lane]. A group is 4 x 4 pixels; a block is one vector of
-/// them, rows of a group one after the other. Two columns and rows of groups beyond the area may be
-/// written and are never read: a kernel at the area's edge needs no care.
+/// them, rows of a group one after the other.
 class AreaBuffer {
  public:
   static constexpr int group_size = 4;
   static constexpr int groups = 16;                 ///< of a row and of a column of the area
   static constexpr int size = groups * group_size;  ///< pixels of a side
-  static constexpr int padded = groups + 2;
   static constexpr int group_pixels = group_size * group_size;
   static constexpr int max_planes = 16;
 
@@ -43,14 +41,15 @@ class AreaBuffer {
     // A plane of room to spare: groups whose distance is a power of two would share cache sets.
     group_floats_ = plane_floats_ * static_cast<std::size_t>(num_planes + 1);
     num_fields_ = num_fields;
-    values_.assign(static_cast<std::size_t>(padded) * row_floats(), 0.0f);
-    touched_.assign(static_cast<std::size_t>(padded * padded) * num_fields_, 0);
+    values_.assign(groups * row_floats(), 0.0f);
+    touched_.assign(groups * groups * num_fields_, 0);
   }
 
   std::size_t block_floats() const { return block_floats_; }
   std::size_t plane_floats() const { return plane_floats_; }  ///< of a group
   std::size_t group_floats() const { return group_floats_; }
-  std::size_t row_floats() const { return padded * group_floats_; }
+  // Two planes of room to spare, for the same reason.
+  std::size_t row_floats() const { return groups * group_floats_ + 2 * plane_floats_; }
 
   /// First float of a group on plane 0. Hot: unchecked.
   float* at(int row, int column) {
@@ -60,7 +59,7 @@ class AreaBuffer {
   /// Planes on which a group may hold anything but zero, an element a field; those of the next
   /// group of the row follow.
   PlaneBits* touched(int row, int column) {
-    return touched_.data() + static_cast<std::size_t>(row * padded + column) * num_fields_;
+    return touched_.data() + static_cast<std::size_t>(row * groups + column) * num_fields_;
   }
   std::size_t num_fields() const { return num_fields_; }
 

@@ -12,12 +12,13 @@
 
 namespace motes {
 
-/// Samples of 64 x 64 pixels: [row of pixels][column of pixels][field][channel][plane]. A few
-/// pixels beyond the area may be written and are never read.
+/// Samples of 64 x 64 pixels: [row of pixels][column of pixels][vector of planes][field][channel]
+/// [plane of the vector]. A few pixels beyond the area may be written and are never read: a kernel
+/// at the area's edge needs no care.
 class ColumnBuffer {
  public:
   static constexpr int planes = 16;
-  static constexpr int padded = AreaBuffer::padded * AreaBuffer::group_size;
+  static constexpr int padded = AreaBuffer::size + 2 * AreaBuffer::group_size;
 
   /// Makes room for that layout; if it is the layout already, samples keep what they hold, else all
   /// are zero and untouched.
@@ -45,7 +46,7 @@ class ColumnBuffer {
  private:
   std::size_t pixel_floats_ = 0;
   AlignedVector<float> values_;
-  std::array<GroupBits, AreaBuffer::padded> touched_{};
+  std::array<GroupBits, AreaBuffer::groups> touched_{};
 };
 
 }  // namespace motes

@@ -51,8 +51,7 @@ struct RayState {
   SampleIndex begin = 0, end = -1;              ///< of all lanes; begin > end: none
   alignas(64) float length[max_lanes];          ///< of the direction
   alignas(64) float half_to_eye[3][max_lanes];  ///< half of the unit vector to the eye
-  alignas(64) float r[max_lanes], g[max_lanes], b[max_lanes];
-  alignas(64) float transparency[max_lanes];  ///< 1 - opacity
+  alignas(64) float r[max_lanes], g[max_lanes], b[max_lanes], a[max_lanes];
 };
 
 /// Channels of a field at a sample: its value; with `gradients` its gradient in camera axes; with

@@ -291,6 +291,58 @@ TEST(Engines, SmallKernelsSeenThroughASlit) {
   s.scene.camera.orthographic_height = 64;
   s.scene.render.width = s.scene.render.height = 64;
   check(s, "slit");
+  s.scene.fields.push_back(s.scene.fields[0]);
+  s.scene.transfer_functions.push_back(ramp(1, 0.5));
+  s.scene.render.lighting.enabled = true;
+  check(s, "slit, two fields, lit");
+}
+
+TEST(Engines, EveryShininessFromTheSide) {
+  // Thin samples, the light anywhere but at the eye; shininess by a few multiplications and by
+  // logarithms.
+  PlainScene s = plain_scene({{0, 0, 0}, {1, 1, 0}, {-1, 1, 1}}, 10);
+  s.scene.transfer_functions = {ramp(1, 0.3)};
+  s.scene.render.lighting.enabled = true;
+  s.scene.render.lighting.direction = Vector3d{-0.5, 0.7, 0.4};
+  for (int fields = 1; fields <= 2; ++fields) {
+    for (const double shininess : {0.0, 0.5, 1.0, 3.0, 20.0, 32.0, 1023.0, 2000.0}) {
+      s.scene.render.lighting.shininess = shininess;
+      check(s, fmt::format("{} fields, shininess {}", fields, shininess));
+    }
+    s.scene.fields.push_back(s.scene.fields[0]);
+    s.scene.transfer_functions.push_back(ramp(0.7, 0.2));
+  }
+}
+
+TEST(Engines, ManyUnevenPoints) {
+  // More segments than any vector has lanes, found by bisection; then beside a field with few.
+  TransferFunction function;
+  for (int i = 0; i < 40; ++i) {
+    const double value = 0.001 * i * i;
+    const auto part = static_cast<float>(i) / 40;
+    function.points.push_back({value, {part, 1 - part, 0.5F}, 0.2 + 0.1 * (i % 3)});
+  }
+  PlainScene s = plain_scene({{0, 0, 0}, {1, 1, 0}, {-1, 1, 1}}, 10);
+  s.scene.transfer_functions = {function};
+  check(s, "many");
+  s.scene.fields.push_back(s.scene.fields[0]);
+  s.scene.transfer_functions.push_back(
+      {{{0, {1, 0, 0}, 0}, {0.1, {0, 1, 0}, 0.3}, {0.5, {0, 0, 1}, 0.1}}, false});
+  check(s, "many, and few");
+}
+
+TEST(Engines, FirstOfSeveralFieldsEndsRays) {
+  // All fields of the sample at which a ray becomes opaque are seen, though the first would do; its
+  // fields are more than are composited together.
+  PlainScene s = plain_scene({{0, 0, 0}, {1, 1, 0}, {-1, 1, 1}}, 10);
+  s.scene.transfer_functions = {{{{0.3, {1, 0, 0}, 0}, {0.31, {1, 0, 0}, 12}}, false}};
+  for (int f = 1; f < 7; ++f) {
+    s.scene.fields.push_back(s.scene.fields[0]);
+    s.scene.transfer_functions.push_back(ramp(1 + 0.2 * f, 0.2 * f));
+  }
+  check(s, "seven fields");
+  s.scene.render.lighting.enabled = true;
+  check(s, "seven fields, lit");
 }
 
 TEST(Engines, OneLitFieldAndFourUnlitOnesInTurn) {
@@ -303,7 +355,9 @@ TEST(Engines, OneLitFieldAndFourUnlitOnesInTurn) {
     four.scene.transfer_functions.push_back(ramp(1 + 0.3 * f, 0.3));
   }
   const auto render = [](const PlainScene& s) {
-    return Renderer(s.particles, s.scene.fields).render(s.scene, {.threads = 1});
+    RenderOptions options;
+    options.threads = 1;
+    return Renderer(s.particles, s.scene.fields).render(s.scene, options);
   };
   // A new thread has kept nothing.
   const auto render_anew = [&](const PlainScene& s) {

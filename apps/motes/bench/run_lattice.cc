@@ -35,7 +35,7 @@ struct Lattice {
 std::vector<Lattice> lattices(const BenchOptions& options) {
   // Particles of smaller pictures cover as many pixels.
   const auto scaled = [&](double n) {
-    return static_cast<std::size_t>(std::max(std::round(n * options.width / 1024), 2.0));
+    return static_cast<std::size_t>(std::max(std::round(n * options.height / 1024), 2.0));
   };
   std::vector<Lattice> all;
   for (const double n : {45, 90, 169}) {
