@@ -121,8 +121,8 @@ class PlaneKernels {
 
   /// Sorted ones whose boxes have so many columns, or at least as many if it is max_box_shape.
   std::span<const BoxedKernel> with_columns(int columns) const {
-    const std::size_t end = begin_[static_cast<std::size_t>(columns * max_box_shape)];
-    const std::size_t begin = begin_[static_cast<std::size_t>((columns - 1) * max_box_shape)];
+    const std::size_t end = begin_[static_cast<std::size_t>(columns) * max_box_shape];
+    const std::size_t begin = begin_[static_cast<std::size_t>(columns - 1) * max_box_shape];
     return {sorted_.data() + begin, end - begin};
   }
 

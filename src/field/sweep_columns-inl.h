@@ -275,7 +275,7 @@ HWY_NOINLINE void add_thin_kernels(const GatheredKernels& gathered, const ThinKe
                                    const SampleLayout& layout, ColumnBuffer& buffer,
                                    EvaluationCounts& counts) {
   const DepthTag d;
-  const auto field_floats = static_cast<std::size_t>(layout.channels() * depth_lanes);
+  const std::size_t field_floats = static_cast<std::size_t>(layout.channels()) * depth_lanes;
   const std::size_t depth_floats = field_floats * static_cast<std::size_t>(layout.num_fields);
   for (std::size_t n = 0; n < list.size; ++n) {
     const PixelBox box = list.box_of(n);
