@@ -1,5 +1,4 @@
 // Every engine, on every instruction set and any number of threads, makes the reference's picture.
-// The tolerances are those of docs/field.md, "Exactness".
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -7,74 +6,16 @@
 #include <cmath>
 #include <numbers>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "core/error.h"
-#include "image/compare.h"
-#include "reference/render.h"
-#include "render/engine_ways.h"
+#include "render/engine_check.h"
 #include "render/renderer.h"
 #include "support/particles_at.h"
 #include "support/random_scene.h"
 
 namespace motes {
 namespace {
-
-Framebuffer to_framebuffer(const reference::Image& image) {
-  Framebuffer framebuffer(image.width, image.height);
-  std::transform(image.rgba.begin(), image.rgba.end(), framebuffer.rgba.begin(),
-                 [](double v) { return static_cast<float>(v); });
-  return framebuffer;
-}
-
-/// Holds pictures against the reference's, and sums up what no single small picture can show.
-class Comparison {
- public:
-  /// Renders the scene in all ways.
-  void check(const ParticleSet& particles, const ResolvedScene& scene,
-             const std::string& description) {
-    const reference::Image truth = reference::render(particles, scene);
-    const Framebuffer expected = to_framebuffer(truth);
-    const auto unstable = std::count(truth.unstable.begin(), truth.unstable.end(), 1);
-    unstable_ += static_cast<std::size_t>(unstable);
-    pixels_ += expected.num_pixels();
-    const Renderer renderer(particles, scene.fields);
-    for (const Way& way : all_ways()) {
-      RenderStatistics statistics;
-      const Framebuffer image = render_in(way, renderer, scene, 2, &statistics);
-      ASSERT_EQ(image.width, expected.width);
-      ASSERT_EQ(image.height, expected.height);
-      const ImageDifference stable = compare_images(image, expected, truth.unstable);
-      const std::string where = fmt::format("{}\n{}, worst at pixel ({}, {})", description,
-                                            way.name(), stable.worst_x, stable.worst_y);
-      EXPECT_LE(stable.max, 1e-3) << where;
-      EXPECT_LE(stable.rms, 1e-4) << where;
-      if (unstable == 0) {
-        EXPECT_EQ(statistics.samples, truth.samples) << where;
-        EXPECT_GE(statistics.kernel_evaluations, truth.kernel_evaluations) << where;
-      }
-      const double rms = compare_images(image, expected).rms;
-      mean_squares_ += rms * rms * static_cast<double>(expected.num_pixels());
-    }
-  }
-
-  /// Over all pixels, the unstable ones included.
-  double rms() const {
-    const auto pictures = static_cast<double>(all_ways().size());
-    return std::sqrt(mean_squares_ / (pictures * static_cast<double>(pixels_)));
-  }
-  double unstable_share() const {
-    return static_cast<double>(unstable_) / static_cast<double>(pixels_);
-  }
-
- private:
-  std::size_t unstable_ = 0, pixels_ = 0;
-  double mean_squares_ = 0;
-};
-
-/// Scenes are compared in blocks, one a test, so that they run side by side.
-constexpr int num_blocks = 8, seeds_per_block = 25;
 
 class EngineSweep : public testing::TestWithParam<int> {};
 
@@ -96,37 +37,6 @@ INSTANTIATE_TEST_SUITE_P(Blocks, EngineSweep, testing::Range(0, num_blocks));
 
 /// A scene of one field: radius 1, weight 1, sigma 2; seen along -z from a distance, unlit, 24 x 20
 /// pixels.
-struct PlainScene {
-  ParticleSet particles;
-  ResolvedScene scene;
-};
-
-TransferFunction ramp(double high, double extinction) {
-  return {{{.value = 0, .color = {0.1F, 0.2F, 1}, .extinction = 0},
-           {.value = high, .color = {1, 0.8F, 0.3F}, .extinction = extinction}},
-          false};
-}
-
-PlainScene plain_scene(const std::vector<Point3d>& centers, double distance) {
-  PlainScene s;
-  s.particles = particles_at(centers);
-  s.scene.fields = {field_of_all(s.particles, 1, 1, {})};
-  s.scene.transfer_functions = {ramp(1, 1)};
-  s.scene.camera.eye = {0, 0, distance};
-  s.scene.camera.target = {0, 0, 0};
-  s.scene.step_size = 0.5;
-  s.scene.render.width = 24;
-  s.scene.render.height = 20;
-  s.scene.render.lighting.enabled = false;
-  return s;
-}
-
-void check(const PlainScene& s, const std::string& description) {
-  Comparison comparison;
-  comparison.check(s.particles, s.scene, description);
-  EXPECT_LT(comparison.unstable_share(), 0.5);
-}
-
 TEST(Engines, LoneParticleOnTheAxis) {
   // The middle ray meets samples at the very centre of the kernel, where the gradient is zero.
   PlainScene s = plain_scene({{0, 0, 0}}, 10.15);
@@ -186,24 +96,6 @@ TEST(Engines, CoincidentParticlesOfBothSigns) {
   check(s, "coincident");
 }
 
-TEST(Engines, EvenlySpacedPointsAsNamedMapsHave) {
-  for (const int num_points : {4, 17, 33, 34, 80}) {
-    for (const bool log_scale : {false, true}) {
-      PlainScene s = plain_scene({{0, 0, 0}, {1.5, 0.5, 1}, {0.2, -1, 0}}, 9);
-      TransferFunction& f = s.scene.transfer_functions[0];
-      f = {{}, log_scale};
-      for (int i = 0; i < num_points; ++i) {
-        const double at = static_cast<double>(i) / (num_points - 1);
-        const auto t = static_cast<float>(at);
-        f.points.push_back({.value = log_scale ? std::pow(10, 2 * at - 2) : 0.1 + at,
-                            .color = {t, 0.5F + 0.5F * std::sin(9 * t), 1 - t},
-                            .extinction = t * (1.2 + std::cos(7 * t))});
-      }
-      check(s, fmt::format("{} points, {}", num_points, log_scale ? "logarithmic" : "linear"));
-    }
-  }
-}
-
 TEST(Engines, BothSignsSeenAndZeroNot) {
   PlainScene s = plain_scene({{0, 0, 0}, {1.5, 0.5, 1}}, 9);
   s.scene.fields[0].weight = {1, -1};
@@ -212,18 +104,6 @@ TEST(Engines, BothSignsSeenAndZeroNot) {
                                   {.value = 1, .color = {1, 0, 0}, .extinction = 2}},
                                  false}};
   check(s, "both signs");
-}
-
-TEST(Engines, ThousandsOfThinSamples) {
-  PlainScene s = plain_scene({{0, 0, 0}, {1, -1, 2}}, 8);
-  s.scene.step_size = 0.002;
-  s.scene.transfer_functions = {ramp(1, 0.7)};
-  s.scene.render.width = 7;
-  s.scene.render.height = 5;
-  // Too many samples for pixels to be stable: the mean must be right nevertheless.
-  Comparison comparison;
-  comparison.check(s.particles, s.scene, "thin");
-  EXPECT_LT(comparison.rms(), 5e-4);
 }
 
 TEST(Engines, OneStepAcrossEverything) {
@@ -295,98 +175,6 @@ TEST(Engines, SmallKernelsSeenThroughASlit) {
   s.scene.transfer_functions.push_back(ramp(1, 0.5));
   s.scene.render.lighting.enabled = true;
   check(s, "slit, two fields, lit");
-}
-
-TEST(Engines, EveryShininessFromTheSide) {
-  // Thin samples, the light anywhere but at the eye; shininess by a few multiplications and by
-  // logarithms.
-  PlainScene s = plain_scene({{0, 0, 0}, {1, 1, 0}, {-1, 1, 1}}, 10);
-  s.scene.transfer_functions = {ramp(1, 0.3)};
-  s.scene.render.lighting.enabled = true;
-  s.scene.render.lighting.direction = Vector3d{-0.5, 0.7, 0.4};
-  for (int fields = 1; fields <= 2; ++fields) {
-    for (const double shininess : {0.0, 0.5, 1.0, 3.0, 20.0, 32.0, 1023.0, 2000.0}) {
-      s.scene.render.lighting.shininess = shininess;
-      check(s, fmt::format("{} fields, shininess {}", fields, shininess));
-    }
-    s.scene.fields.push_back(s.scene.fields[0]);
-    s.scene.transfer_functions.push_back(ramp(0.7, 0.2));
-  }
-}
-
-TEST(Engines, ManyUnevenPoints) {
-  // More segments than any vector has lanes, found by bisection; then beside a field with few.
-  TransferFunction function;
-  for (int i = 0; i < 40; ++i) {
-    const double value = 0.001 * i * i;
-    const auto part = static_cast<float>(i) / 40;
-    function.points.push_back({value, {part, 1 - part, 0.5F}, 0.2 + 0.1 * (i % 3)});
-  }
-  PlainScene s = plain_scene({{0, 0, 0}, {1, 1, 0}, {-1, 1, 1}}, 10);
-  s.scene.transfer_functions = {function};
-  check(s, "many");
-  s.scene.fields.push_back(s.scene.fields[0]);
-  s.scene.transfer_functions.push_back(
-      {{{0, {1, 0, 0}, 0}, {0.1, {0, 1, 0}, 0.3}, {0.5, {0, 0, 1}, 0.1}}, false});
-  check(s, "many, and few");
-}
-
-TEST(Engines, FirstOfSeveralFieldsEndsRays) {
-  // All fields of the sample at which a ray becomes opaque are seen, though the first would do; its
-  // fields are more than are composited together.
-  PlainScene s = plain_scene({{0, 0, 0}, {1, 1, 0}, {-1, 1, 1}}, 10);
-  s.scene.transfer_functions = {{{{0.3, {1, 0, 0}, 0}, {0.31, {1, 0, 0}, 12}}, false}};
-  for (int f = 1; f < 7; ++f) {
-    s.scene.fields.push_back(s.scene.fields[0]);
-    s.scene.transfer_functions.push_back(ramp(1 + 0.2 * f, 0.2 * f));
-  }
-  check(s, "seven fields");
-  s.scene.render.lighting.enabled = true;
-  check(s, "seven fields, lit");
-}
-
-TEST(Engines, OneLitFieldAndFourUnlitOnesInTurn) {
-  // As many channels in all: what a thread keeps from one frame to the next must fit both.
-  PlainScene one = plain_scene({{0, 0, 0}, {1, 1, 0}, {-1, 1, 1}}, 10);
-  PlainScene four = one;
-  one.scene.render.lighting.enabled = true;
-  for (int f = 1; f < 4; ++f) {
-    four.scene.fields.push_back(four.scene.fields[0]);
-    four.scene.transfer_functions.push_back(ramp(1 + 0.3 * f, 0.3));
-  }
-  const auto render = [](const PlainScene& s) {
-    RenderOptions options;
-    options.threads = 1;
-    return Renderer(s.particles, s.scene.fields).render(s.scene, options);
-  };
-  // A new thread has kept nothing.
-  const auto render_anew = [&](const PlainScene& s) {
-    Framebuffer image;
-    std::thread([&] { image = render(s); }).join();
-    return image;
-  };
-  const Framebuffer lit = render_anew(one), unlit = render_anew(four);
-  for (int turn = 0; turn < 3; ++turn) {
-    EXPECT_EQ(render(one), lit) << turn;
-    EXPECT_EQ(render(four), unlit) << turn;
-  }
-}
-
-TEST(Engines, MoreFieldsThanOnePassHolds) {
-  PlainScene s = plain_scene({{0, 0, 0}, {1, 1, 0}, {-1, 1, 1}}, 10);
-  const FieldSource first = s.scene.fields[0];
-  for (int f = 1; f < 64; ++f) {
-    s.scene.fields.push_back(first);
-    s.scene.fields.back().kernel.support_factor = 1 + 0.02 * f;
-    s.scene.transfer_functions.push_back(ramp(1 + 0.1 * f, 0.05));
-  }
-  check(s, "64 fields");
-}
-
-TEST(Engines, FogShowsTheWholeBox) {
-  PlainScene s = plain_scene({{0, 0, 0}, {30, 20, 10}}, 90);
-  s.scene.transfer_functions = {{{{.value = 0, .color = {1, 1, 1}, .extinction = 0.01}}, false}};
-  check(s, "fog");
 }
 
 TEST(Engines, RefuseACameraThatLooksNowhere) {

@@ -111,52 +111,6 @@ double tick_step(double range) {
   return 10 * power;
 }
 
-}  // namespace
-
-std::string to_svg(const BarChart& chart) {
-  constexpr double bar = 11, gap = 12, label_height = 110;
-  double low = 1e300, high = 0;
-  for (const auto& series : chart.series) {
-    for (const auto& value : series.values) {
-      if (!value) continue;
-      low = std::min(low, *value);
-      high = std::max(high, *value);
-    }
-  }
-  const double first = std::floor(std::log10(low)),
-               last = std::max(first + 1, std::ceil(std::log10(high)));
-  const auto height_of = [&](double value) {
-    return plot_height * (std::log10(value) - first) / (last - first);
-  };
-  const double group = bar * static_cast<double>(chart.series.size()) + gap;
-  const double width = group * static_cast<double>(chart.categories.size());
-  Drawing drawing(std::max(left + width + right, captions_width(chart.title, chart.series)),
-                  top + plot_height + label_height);
-  draw_captions(drawing, chart.title, chart.value_name, chart.series);
-  for (double decade = first; decade <= last; ++decade) {
-    const double y = top + plot_height - height_of(std::pow(10, decade));
-    drawing.line(left, y, left + width, y, "#ddd");
-    drawing.text(left - 6, y + 4, fmt::format("{:g}", std::pow(10, decade)), "end");
-  }
-  for (std::size_t c = 0; c < chart.categories.size(); ++c) {
-    const double x = left + group * static_cast<double>(c) + gap / 2;
-    for (std::size_t s = 0; s < chart.series.size(); ++s) {
-      const auto& value = chart.series[s].values[c];
-      if (!value) continue;
-      drawing.rectangle(
-          x + bar * static_cast<double>(s), top + plot_height - height_of(*value), bar - 1,
-          height_of(*value), colors[s % colors.size()],
-          fmt::format("{}, {}: {:.3g}", chart.categories[c], chart.series[s].name, *value));
-    }
-    drawing.text(x + (group - gap) / 2 + 4, top + plot_height + 14, chart.categories[c], "end", 11,
-                 -40);
-  }
-  drawing.line(left, top + plot_height, left + width, top + plot_height, "#222");
-  return drawing.svg();
-}
-
-namespace {
-
 /// Values to places along an axis, from 0 to 1; logarithmic axes span whole decades.
 class Axis {
  public:
@@ -185,6 +139,45 @@ class Axis {
 };
 
 }  // namespace
+
+std::string to_svg(const BarChart& chart) {
+  constexpr double bar = 11, gap = 12, label_height = 110;
+  double low = 1e300, high = 0;
+  for (const auto& series : chart.series) {
+    for (const auto& value : series.values) {
+      if (!value) continue;
+      low = std::min(low, *value);
+      high = std::max(high, *value);
+    }
+  }
+  const Axis axis(chart.log, chart.log ? low : 0, high);
+  const auto height_of = [&](double value) { return plot_height * axis.place(value); };
+  const double group = bar * static_cast<double>(chart.series.size()) + gap;
+  const double width = group * static_cast<double>(chart.categories.size());
+  Drawing drawing(std::max(left + width + right, captions_width(chart.title, chart.series)),
+                  top + plot_height + label_height);
+  draw_captions(drawing, chart.title, chart.value_name, chart.series);
+  for (const double tick : axis.ticks()) {
+    const double y = top + plot_height - height_of(tick);
+    drawing.line(left, y, left + width, y, "#ddd");
+    drawing.text(left - 6, y + 4, fmt::format("{:g}", tick), "end");
+  }
+  for (std::size_t c = 0; c < chart.categories.size(); ++c) {
+    const double x = left + group * static_cast<double>(c) + gap / 2;
+    for (std::size_t s = 0; s < chart.series.size(); ++s) {
+      const auto& value = chart.series[s].values[c];
+      if (!value) continue;
+      drawing.rectangle(
+          x + bar * static_cast<double>(s), top + plot_height - height_of(*value), bar - 1,
+          height_of(*value), colors[s % colors.size()],
+          fmt::format("{}, {}: {:.3g}", chart.categories[c], chart.series[s].name, *value));
+    }
+    drawing.text(x + (group - gap) / 2 + 4, top + plot_height + 14, chart.categories[c], "end", 11,
+                 -40);
+  }
+  drawing.line(left, top + plot_height, left + width, top + plot_height, "#222");
+  return drawing.svg();
+}
 
 std::string to_svg(const LineChart& chart) {
   constexpr double width = 620, label_height = 50;

@@ -8,15 +8,16 @@
 
 namespace motes {
 
-/// Groups of bars over a logarithmic axis; a value may be missing.
+/// Groups of bars; a value may be missing. An axis that is not logarithmic starts at 0.
 struct BarChart {
   struct Series {
     std::string name;
-    std::vector<std::optional<double>> values;  ///< > 0; one a category
+    std::vector<std::optional<double>> values;  ///< one a category; > 0 if `log`
   };
   std::string title, value_name;
   std::vector<std::string> categories;
   std::vector<Series> series;
+  bool log = true;
 };
 
 /// Lines through points; a vertical axis that is not logarithmic starts at 0.

@@ -175,8 +175,9 @@ struct Charts {
                 {{"inside supports, in the frame", {}},
                  {"all lanes, in the frame", {}},
                  {"inside supports, in the sums", {}},
-                 {"all lanes, in the sums", {}}}};
-  BarChart stages{"Where the time of the sweep goes", "% of the time", {}, {}};
+                 {"all lanes, in the sums", {}}},
+                false};
+  BarChart stages{"Where the time of the sweep goes", "% of the time", {}, {}, false};
 
   Charts() {
     for (const char* stage : stage_names) stages.series.push_back({stage, {}});
