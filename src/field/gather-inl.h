@@ -18,6 +18,7 @@
 
 #include "core/aligned.h"
 #include "field/sampling-inl.h"
+#include "samples/compress-inl.h"
 #include "samples/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -31,8 +32,8 @@ struct GatheredKernels {
   std::size_t size = 0;
   // What finish_kernels() adds.
   AlignedVector<float> support_sq;
-  AlignedVector<float> plane_support_sq;  ///< -1 for kernels that are not summed plane by plane
-  AlignedVector<float> exponent_scale;    ///< -log2(e) / (2 radius^2)
+  AlignedVector<float> plane_support_sq, thin_support_sq;  ///< -1 for kernels of the other shape
+  AlignedVector<float> exponent_scale;                     ///< -log2(e) / (2 radius^2)
   AlignedVector<float> peak;  ///< kappa * weight, of a normalised field over the kernel's integral
   AlignedVector<float> cut;   ///< a kernel is zero where its absolute value would be less
 
@@ -41,7 +42,7 @@ struct GatheredKernels {
     if (size + count + max_lanes <= x.size()) return;
     const std::size_t room = 2 * (size + count + max_lanes);
     for (auto* array : {&x, &y, &z, &radius, &weight, &support_sq, &plane_support_sq,
-                        &exponent_scale, &peak, &cut}) {
+                        &thin_support_sq, &exponent_scale, &peak, &cut}) {
       array->resize(room);
     }
     field.resize(room);
@@ -49,13 +50,15 @@ struct GatheredKernels {
 };
 
 /// Works out what the sweep needs of the kernels beside their places.
-inline void finish_kernels(const SamplingConstants& constants, GatheredKernels& out) {
+inline void finish_kernels(const SamplingConstants& constants, bool one_field,
+                           GatheredKernels& out) {
   const LaneTag d;
   const hn::RebindToSigned<LaneTag> di;
   static_assert(sizeof(FieldConstants) == 4 * sizeof(float));
   for (std::size_t i = 0; i < out.size; i += hn::Lanes(d)) {
     const auto field = hn::BitCast(di, hn::Load(hn::RebindToUnsigned<LaneTag>(), &out.field[i]));
     const auto of_field = [&](const float& first_field) HWY_ATTR {
+      if (one_field) return hn::Set(d, first_field);
       return hn::GatherIndex(d, &first_field, hn::ShiftLeft<2>(field));
     };
     const FieldConstants& first = constants.fields[0];
@@ -90,18 +93,19 @@ HWY_NOINLINE void gather_kernels(const KernelSet& kernels, const SamplingConstan
       const LaneMask reaches = may_reach(d, frame, frustum, centers, support);
       if (hn::AllFalse(d, reaches)) continue;
       const Lanes weight = hn::Load(d, kernels.weight.from(at));
-      hn::StoreU(hn::Compress(centers.x, reaches), d, out.x.data() + out.size);
-      hn::StoreU(hn::Compress(centers.y, reaches), d, out.y.data() + out.size);
-      hn::StoreU(hn::Compress(centers.z, reaches), d, out.z.data() + out.size);
-      hn::StoreU(hn::Compress(radius, reaches), d, out.radius.data() + out.size);
-      hn::StoreU(hn::Compress(weight, reaches), d, out.weight.data() + out.size);
+      const FrontLanes front(d, reaches);
+      front.store(centers.x, out.x.data() + out.size);
+      front.store(centers.y, out.y.data() + out.size);
+      front.store(centers.z, out.z.data() + out.size);
+      front.store(radius, out.radius.data() + out.size);
+      front.store(weight, out.weight.data() + out.size);
       auto field = hn::Zero(du);
       if (!kernels.field.empty()) {
         field =
             hn::PromoteTo(du, hn::LoadU(hn::Rebind<std::uint8_t, LaneTag>(), &kernels.field[at]));
       }
-      hn::StoreU(hn::Compress(field, hn::RebindMask(du, reaches)), du, out.field.data() + out.size);
-      out.size += hn::CountTrue(d, reaches);
+      front.store(field, out.field.data() + out.size);
+      out.size += front.count();
     }
   };
   // Leaves wait for some others while their positions are fetched: mostly from main memory, which
@@ -129,7 +133,7 @@ HWY_NOINLINE void gather_kernels(const KernelSet& kernels, const SamplingConstan
   for (std::size_t i = num_visited - num_waiting; i < num_visited; ++i) {
     add_leaf(waiting[i % waiting.size()]);
   }
-  finish_kernels(constants, out);
+  finish_kernels(constants, kernels.fields.size() == 1, out);
 }
 
 }  // namespace HWY_NAMESPACE

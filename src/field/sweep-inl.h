@@ -55,7 +55,7 @@ struct SweptKernel {
 };
 
 HWY_INLINE SweptKernel place_kernel(const GatheredKernels& gathered, std::size_t i,
-                                    const AreaPlane& plane, const GroupBox& box) {
+                                    const AreaPlane& plane, const KernelBox& box) {
   const float scale = gathered.exponent_scale[i];
   const auto first_column = static_cast<float>(box.column * AreaBuffer::group_size);
   const auto first_row = static_cast<float>(box.row * AreaBuffer::group_size);
@@ -232,7 +232,7 @@ class LiveGroups {
     }
   }
 
-  bool any_in(const GroupBox& box) const {
+  bool any_in(const KernelBox& box) const {
     const auto &low = before_[box.row], &high = before_[std::size_t{box.last_row} + 1];
     const std::size_t begin = box.column, end = std::size_t{box.last_column} + 1;
     return high[end] - high[begin] != low[end] - low[begin];
@@ -261,7 +261,7 @@ struct ReachedColumns {
   alignas(64) GroupBits of_row[AreaBuffer::groups];
 
   HWY_INLINE void find(LaneTag d, const SweptKernel& kernel, float support_sq,
-                       const GroupBox& box) {
+                       const KernelBox& box) {
     const hn::RebindToSigned<LaneTag> di;
     const hn::RebindToUnsigned<LaneTag> du;
     constexpr float size = AreaBuffer::group_size, middle = 0.5f * (size - 1);
@@ -300,7 +300,7 @@ struct KernelBatch {
   static constexpr bool kWide = kColumns == AreaBuffer::groups;
   static constexpr std::size_t most = 16;
   struct Member {
-    GroupBox box;
+    KernelBox box;
     float cut;
     float* samples;                  ///< of the box's first group: the field's channel 0
     AreaBuffer::PlaneBits* touched;  ///< of the box's first group, the field's
@@ -316,7 +316,7 @@ struct KernelBatch {
                        std::span<const BoxedKernel>& list) {
     count = 0;
     for (; !list.empty() && count < most; list = list.subspan(1)) {
-      const GroupBox box = list[0].box;
+      const KernelBox box = list[0].box;
       if (!samples.live.any_in(box)) continue;
       const std::size_t k = list[0].kernel, plane = list[0].plane;
       Member& out = members[count++];
@@ -380,7 +380,7 @@ HWY_NOINLINE void add_wide_kernels(LaneTag d, const GatheredKernels& gathered,
     batch.fill(d, gathered, samples, list);
     for (std::size_t i = 0; i < batch.count; ++i) {
       const auto& kernel = batch.members[i];
-      const GroupBox box = kernel.box;
+      const KernelBox box = kernel.box;
       for (int row = 0; row < box.rows(); ++row) {
         const GroupBits reached_live =
             kernel.reached.of_row[row] & samples.live.row(box.row + row) >> box.column;
@@ -413,10 +413,10 @@ void sum_planes(const GatheredKernels& gathered, const PlaneKernels& kernels,
                 const PlaneSamples& samples, EvaluationCounts& counts) {
   const LaneTag d;
   unroll<max_box_shape - 1>([&](auto i) HWY_ATTR {
-    constexpr int columns = static_cast<int>(i) + 1;
-    add_narrow_kernels<columns, C>(d, gathered, kernels.with_columns(columns), samples, counts);
+    constexpr std::size_t columns = i + 1;
+    add_narrow_kernels<columns, C>(d, gathered, with_columns(kernels, columns), samples, counts);
   });
-  add_wide_kernels<C>(d, gathered, kernels.with_columns(max_box_shape), samples, counts);
+  add_wide_kernels<C>(d, gathered, with_columns(kernels, max_box_shape), samples, counts);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -21,6 +21,7 @@
 #include "core/aligned.h"
 #include "field/gather-inl.h"
 #include "samples/area_buffer.h"
+#include "samples/compress-inl.h"
 #include "samples/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -53,29 +54,31 @@ inline AreaPlane place_plane(const RayBounds& area, const SlabFrame& frame, int 
           static_cast<float>(z)};
 }
 
-/// Groups of an area that a kernel may reach on a plane.
-struct GroupBox {
+/// Groups or pixels of an area that a kernel may reach.
+struct KernelBox {
   std::uint8_t column, row, last_column, last_row;
 
   int columns() const { return last_column - column + 1; }
   int rows() const { return last_row - row + 1; }
 };
 
-/// Shapes of boxes in groups of pixels: their columns and rows, each up to max_box_shape and all
-/// that are longer.
-inline constexpr int max_box_shape = 7;
-inline constexpr std::size_t num_box_shapes = max_box_shape * max_box_shape;
+/// The bytes of KernelBoxes.
+template <class V>
+HWY_INLINE V box_of(V column, V row, V last_column, V last_row) {
+  return hn::Or(hn::Or(column, hn::ShiftLeft<8>(row)),
+                hn::Or(hn::ShiftLeft<16>(last_column), hn::ShiftLeft<24>(last_row)));
+}
 
-/// A gathered kernel that reaches one of the planes.
+/// A gathered kernel on a plane or, if it is thin, on a vector of planes from that on.
 struct BoxedKernel {
   std::uint32_t kernel, plane;
-  GroupBox box;
+  KernelBox box;
 };
 
-/// Kernels that reach some planes, first as they are found, then by the shapes of their boxes:
-/// loops over the groups of a box are of the same length for many kernels, and the processor
-/// guesses right when they end. A mistake costs it as much as two groups.
-class PlaneKernels {
+/// Kernels that reach some planes, first as they are found, then by a key below kKeys: what belongs
+/// together comes one after the other.
+template <std::size_t kKeys>
+class SortedKernels {
  public:
   std::size_t size() const { return size_; }
   void clear() { size_ = 0; }
@@ -84,54 +87,61 @@ class PlaneKernels {
   void reserve(std::size_t count) {
     if (size_ + count + max_lanes <= kernel_.size()) return;
     const std::size_t room = 2 * (size_ + count + max_lanes);
-    for (auto* array : {&kernel_, &plane_, &box_, &shape_}) array->resize(room);
+    for (auto* array : {&kernel_, &plane_, &box_, &key_}) array->resize(room);
   }
 
-  /// Adds the lanes of `which`, with boxes of so many columns and rows.
-  template <class DU, class M, class V>
-  HWY_INLINE void append(DU du, M which, V kernel, std::uint32_t plane, V box, V columns, V rows) {
-    const V most = hn::Set(du, std::uint32_t{max_box_shape}), one = hn::Set(du, 1);
-    const V shape = hn::Add(hn::Mul(hn::Sub(hn::Min(columns, most), one), most),
-                            hn::Sub(hn::Min(rows, most), one));
-    hn::StoreU(hn::Compress(shape, which), du, shape_.data() + size_);
-    hn::StoreU(hn::Compress(kernel, which), du, kernel_.data() + size_);
-    hn::StoreU(hn::Set(du, plane), du, plane_.data() + size_);
-    hn::StoreU(hn::Compress(box, which), du, box_.data() + size_);
-    size_ += hn::CountTrue(du, which);
+  /// Adds the lanes of `which`.
+  template <class V>
+  HWY_INLINE void append(LaneTag d, LaneMask which, V key, V kernel, V plane, V box) {
+    const FrontLanes front(d, which);
+    front.store(key, key_.data() + size_);
+    front.store(kernel, kernel_.data() + size_);
+    front.store(plane, plane_.data() + size_);
+    front.store(box, box_.data() + size_);
+    size_ += front.count();
   }
 
-  /// Sorts by shape. The order within a shape depends only on the order of appending. Four counters
-  /// a shape, taken in turn, since each would wait for its last increment.
+  /// Sorts by key. The order of those of a key depends only on the order of appending. Four
+  /// counters a key, taken in turn, since each would wait for its last increment.
   void sort() {
     sorted_.resize(std::max(sorted_.size(), size_));
     constexpr std::size_t ways = 4;
-    std::array<std::array<std::uint32_t, ways>, num_box_shapes> next{};
-    for (std::size_t i = 0; i < size_; ++i) ++next[shape_[i]][i % ways];
+    std::array<std::array<std::uint32_t, ways>, kKeys> next{};
+    for (std::size_t i = 0; i < size_; ++i) ++next[key_[i]][i % ways];
     std::uint32_t end = 0;
-    for (std::size_t shape = 0; shape < num_box_shapes; ++shape) {
-      begin_[shape] = end;
-      for (std::uint32_t& count : next[shape]) end += std::exchange(count, end);
+    for (std::size_t key = 0; key < kKeys; ++key) {
+      begin_[key] = end;
+      for (std::uint32_t& count : next[key]) end += std::exchange(count, end);
     }
-    begin_[num_box_shapes] = end;
+    begin_[kKeys] = end;
     for (std::size_t i = 0; i < size_; ++i) {
-      sorted_[next[shape_[i]][i % ways]++] = {kernel_[i], plane_[i],
-                                              std::bit_cast<GroupBox>(box_[i])};
+      sorted_[next[key_[i]][i % ways]++] = {kernel_[i], plane_[i],
+                                            std::bit_cast<KernelBox>(box_[i])};
     }
   }
 
-  /// Sorted ones whose boxes have so many columns, or at least as many if it is max_box_shape.
-  std::span<const BoxedKernel> with_columns(int columns) const {
-    const std::size_t end = begin_[static_cast<std::size_t>(columns) * max_box_shape];
-    const std::size_t begin = begin_[static_cast<std::size_t>(columns - 1) * max_box_shape];
-    return {sorted_.data() + begin, end - begin};
+  /// Sorted ones with keys first to last - 1.
+  std::span<const BoxedKernel> with_keys(std::size_t first, std::size_t last) const {
+    return {sorted_.data() + begin_[first], begin_[last] - begin_[first]};
   }
 
  private:
-  AlignedVector<std::uint32_t> kernel_, plane_, box_, shape_;
+  AlignedVector<std::uint32_t> kernel_, plane_, box_, key_;
   std::size_t size_ = 0;
   std::vector<BoxedKernel> sorted_;
-  std::array<std::uint32_t, num_box_shapes + 1> begin_{};
+  std::array<std::uint32_t, kKeys + 1> begin_{};
 };
+
+/// Shapes of boxes of groups: their columns and rows, each up to max_box_shape and all that are
+/// longer. Sorted by them, loops over a box are of the same length for many kernels, and the
+/// processor guesses right when they end. A mistake costs it as much as two groups.
+inline constexpr std::uint32_t max_box_shape = 7;
+using PlaneKernels = SortedKernels<std::size_t{max_box_shape * max_box_shape}>;
+
+/// Those whose boxes have so many columns, or at least as many if it is max_box_shape.
+inline std::span<const BoxedKernel> with_columns(const PlaneKernels& kernels, std::size_t columns) {
+  return kernels.with_keys((columns - 1) * max_box_shape, columns * max_box_shape);
+}
 
 /// First and last group of pixels, not yet rounded down, of those along one axis that lie within
 /// `half` of a centre, both in pixels from the area's first; `any`: there are such.
@@ -175,12 +185,14 @@ HWY_NOINLINE void find_boxes(const GatheredKernels& gathered, const AreaPlane& p
     const auto whole = [&](Lanes v) HWY_ATTR { return hn::BitCast(du, hn::ConvertTo(di, v)); };
     const auto column = whole(columns.first), last_column = whole(columns.last);
     const auto row = whole(rows.first), last_row = whole(rows.last);
-    const auto box = hn::Or(hn::Or(column, hn::ShiftLeft<8>(row)),
-                            hn::Or(hn::ShiftLeft<16>(last_column), hn::ShiftLeft<24>(last_row)));
+    const auto box = box_of(column, row, last_column, last_row);
     const auto kernel = numbers_from(static_cast<std::uint32_t>(i));
-    const auto one = hn::Set(du, 1);
-    out.append(du, hn::RebindMask(du, any), kernel, static_cast<std::uint32_t>(number), box,
-               hn::Add(hn::Sub(last_column, column), one), hn::Add(hn::Sub(last_row, row), one));
+    const auto most = hn::Set(du, max_box_shape - 1);
+    const auto shape = [&](auto first, auto last)
+                           HWY_ATTR { return hn::Min(hn::Sub(last, first), most); };
+    const auto key = hn::Add(hn::Mul(shape(column, last_column), hn::Set(du, max_box_shape)),
+                             shape(row, last_row));
+    out.append(d, any, key, kernel, hn::Set(du, static_cast<std::uint32_t>(number)), box);
   }
 }
 

@@ -13,15 +13,12 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <numbers>
-#include <type_traits>
+#include <span>
 
-#include "core/aligned.h"
 #include "field/gather-inl.h"
 #include "field/sweep-inl.h"
 #include "field/sweep_boxes-inl.h"
@@ -34,350 +31,465 @@ namespace motes {
 namespace HWY_NAMESPACE {
 
 /// Pixels of a side of what a thin kernel reaches, at most.
-inline constexpr int max_thin_pixels = 6;
-/// So many pixels of a thin kernel take about as long as one plane of any kernel: measured, lit.
-inline constexpr float thin_pixels_per_plane = 16;
-/// Planes of a vector: not more than a thin kernel usually reaches, so that others are skipped.
-using DepthTag = hn::CappedTag<float, 8>;
+inline constexpr int max_thin_pixels = 8;
+/// Planes of a vector: not more than a thin kernel usually reaches.
+using DepthTag = hn::CappedTag<float, ColumnBuffer::planes>;
 using DepthLanes = hn::Vec<DepthTag>;
 inline constexpr int depth_lanes = static_cast<int>(hn::MaxLanes(DepthTag()));
-inline constexpr std::uint32_t num_depths = ColumnBuffer::planes / depth_lanes;
+/// So many pixels of a thin kernel take about as long as one plane of any kernel: measured, lit.
+inline constexpr float thin_pixels_per_plane = 20;
 
-/// Planes of a slab, an element each: see AreaPlane.
+/// Planes of a batch, an element each: see AreaPlane.
 struct AreaPlanes {
   alignas(64) float x[ColumnBuffer::planes], dx[ColumnBuffer::planes];
   alignas(64) float y[ColumnBuffer::planes], dy[ColumnBuffer::planes];
   alignas(64) float z[ColumnBuffer::planes];
-  int count = 0;
+  float slope_x, slope_y;  ///< the most that a ray moves across the view, per depth
 };
 
-/// Planes `first` to first + count - 1 of the slab; those that are missing lie where no kernel
-/// does.
-inline AreaPlanes place_planes(const RayBounds& area, const SlabFrame& frame, int first,
-                               int count) {
+/// Planes `first` to first + ColumnBuffer::planes - 1 of the slab; those beyond it are the next
+/// one's.
+inline AreaPlanes place_planes(const RayBounds& area, const SlabFrame& frame, int first) {
   AreaPlanes planes;
-  planes.count = count;
   for (int k = 0; k < ColumnBuffer::planes; ++k) {
-    const AreaPlane plane = place_plane(area, frame, first + std::min(k, count - 1));
+    const AreaPlane plane = place_plane(area, frame, first + k);
     planes.x[k] = plane.x;
     planes.dx[k] = plane.dx;
     planes.y[k] = plane.y;
     planes.dy[k] = plane.dy;
-    planes.z[k] = k < count ? plane.z : 1e10f;
+    planes.z[k] = plane.z;
   }
+  const auto steepest = [](const Range& direction) {
+    return static_cast<float>(std::max(std::abs(direction.low), std::abs(direction.high)));
+  };
+  planes.slope_x = steepest(area.direction_x);
+  planes.slope_y = steepest(area.direction_y);
   return planes;
 }
 
-/// Pixels of an area that a kernel may reach.
-struct PixelBox {
-  std::uint8_t column, row, last_column, last_row;
-};
+/// A quantity that is linear in depth, at `t` times the way from the first of the planes to the
+/// last.
+HWY_INLINE Lanes at_depth(LaneTag d, const float* values, Lanes t) {
+  const float difference = values[ColumnBuffer::planes - 1] - values[0];
+  return hn::MulAdd(t, hn::Set(d, difference), hn::Set(d, values[0]));
+}
 
-/// Gathered kernels that reach but a few pixels; an element for each vector of planes that one
-/// reaches.
-struct ThinKernels {
-  AlignedVector<std::uint32_t> kernel, box;
-  AlignedVector<std::uint32_t> depth;  ///< which vector of planes
-  std::size_t size = 0;
+/// That part of the way for depth z.
+HWY_INLINE Lanes part_of_depth(LaneTag d, const AreaPlanes& planes, Lanes z) {
+  const float per_depth = 1 / (planes.z[ColumnBuffer::planes - 1] - planes.z[0]);
+  return hn::Mul(hn::Sub(z, hn::Set(d, planes.z[0])), hn::Set(d, per_depth));
+}
 
-  PixelBox box_of(std::size_t i) const { return std::bit_cast<PixelBox>(box[i]); }
-  /// Empties the list and makes room for `count`.
-  void start(std::size_t count) {
-    size = 0;
-    if (count + max_lanes <= kernel.size()) return;
-    for (auto* array : {&kernel, &box, &depth}) array->resize(2 * (count + max_lanes));
-  }
-  template <class V, class M>
-  HWY_INLINE void append(V kernels, V boxes, std::uint32_t one_depth, M which) {
-    const hn::RebindToUnsigned<LaneTag> du;
-    hn::StoreU(hn::Compress(kernels, which), du, kernel.data() + size);
-    hn::StoreU(hn::Compress(boxes, which), du, box.data() + size);
-    hn::StoreU(hn::Set(du, one_depth), du, depth.data() + size);
-    size += hn::CountTrue(du, which);
+/// Parts of supports that lie `from` or more before their centres, or behind.
+struct SupportParts {
+  Lanes radius, from;
+  Lanes disc;  ///< radius of the widest disc of a part, `from` away from the centre
+
+  /// How far from its centre rays of up to that slope may pass in it, across the view.
+  HWY_INLINE Lanes reach(LaneTag d, float slope) const {
+    const float length = std::sqrt(1 + slope * slope);
+    const LaneMask widest = hn::Le(from, hn::Mul(radius, hn::Set(d, slope / length)));
+    return hn::IfThenElse(widest, hn::Mul(radius, hn::Set(d, length)),
+                          hn::MulAdd(from, hn::Set(d, slope), disc));
   }
 };
 
-/// Lists of thin kernels: those whose boxes fit so many pixels square.
-inline constexpr std::array<int, 4> thin_sizes = {2, 3, 4, max_thin_pixels};
-using ThinLists = std::array<ThinKernels, thin_sizes.size()>;
-
-inline bool any_kernel(const ThinLists& lists) {
-  return std::any_of(lists.begin(), lists.end(), [](const ThinKernels& l) { return l.size != 0; });
-}
-
-/// First and last pixel along an axis that kernels may reach on any of the planes, not clipped.
-struct PixelSpans {
-  Lanes first, last;
-};
-
-/// `first`, `step`: place of pixel 0 and distance of pixels, at the first and at the last plane
-/// that a kernel reaches.
-HWY_INLINE PixelSpans pixel_spans(LaneTag d, Lanes center, Lanes support, const Lanes first[2],
-                                  const Lanes step[2]) {
-  const Lanes slack = hn::Set(d, 1e-3f);
-  const Lanes near = hn::Div(hn::Sub(center, first[0]), step[0]);
-  const Lanes far = hn::Div(hn::Sub(center, first[1]), step[1]);
-  // Pixels lie closest on the first plane.
-  const Lanes half = hn::Add(hn::Abs(hn::Div(support, step[0])), slack);
-  return {hn::Ceil(hn::Sub(hn::Min(near, far), half)),
-          hn::Floor(hn::Add(hn::Max(near, far), half))};
-}
-
-/// Finds the thin ones of the gathered kernels, and sets gathered.plane_support_sq to that of all
-/// others that reach the planes, -1 for the rest. Returns how many of those there may be.
-HWY_NOINLINE std::size_t find_thin_kernels(const AreaPlanes& planes, GatheredKernels& gathered,
-                                           ThinLists& out) {
+/// Tells thin kernels from others: they cover few pixels, and pixel by pixel cost less than plane
+/// by plane. Sets support_sq of either shape. `planes` are the slab's first, `count` its planes.
+/// Returns how many of the other shape may reach the slab.
+HWY_NOINLINE std::size_t find_thin_kernels(const AreaPlanes& planes, int count,
+                                           GatheredKernels& gathered) {
   const LaneTag d;
-  const hn::RebindToSigned<LaneTag> di;
-  const hn::RebindToUnsigned<LaneTag> du;
-  for (ThinKernels& list : out) list.start(gathered.size * num_depths);
+  const float step = planes.z[1] - planes.z[0];
+  const Lanes near = hn::Set(d, planes.z[0]);
+  const Lanes far = hn::Set(d, planes.z[0] + static_cast<float>(count - 1) * step);
+  const Lanes per_step = hn::Set(d, 1 / step), one = hn::Set(d, 1.0f), none = hn::Set(d, -1.0f);
+  const Lanes most = hn::Set(d, max_thin_pixels - 0.02f);  // room for rounding
   std::size_t others = 0;
-  const int last_plane = planes.count - 1;
-  const float thickness = planes.z[last_plane] - planes.z[0];
-  const Lanes near = hn::Set(d, planes.z[0]), far = hn::Set(d, planes.z[last_plane]);
-  const Lanes per_depth = hn::Set(d, thickness > 0 ? 1 / thickness : 0.0f);
-  const Lanes planes_per_depth = hn::Mul(per_depth, hn::Set(d, static_cast<float>(last_plane)));
-  const Lanes end = hn::Set(d, static_cast<float>(AreaBuffer::size - 1));
-  // A quantity that is linear in depth, at fraction t of the way from the first plane to the last.
-  const auto at = [&](const float* values, Lanes t) HWY_ATTR {
-    return hn::MulAdd(t, hn::Set(d, values[last_plane] - values[0]), hn::Set(d, values[0]));
-  };
   for (std::size_t i = 0; i < gathered.size; i += num_lanes) {
-    const Lanes support_sq = hn::Load(d, gathered.support_sq.data() + i);
-    const Lanes support = hn::Sqrt(hn::Max(support_sq, hn::Zero(d)));
-    const Lanes z = hn::Load(d, gathered.z.data() + i);
-    const Lanes first_z = hn::Max(hn::Sub(z, support), near);
-    const Lanes last_z = hn::Min(hn::Add(z, support), far);
-    const LaneMask reaches =
-        hn::And(hn::Ge(support_sq, hn::Zero(d)), hn::Le(hn::Max(first_z, near), last_z));
-    const Lanes t[2] = {hn::Mul(hn::Sub(first_z, near), per_depth),
-                        hn::Mul(hn::Sub(last_z, near), per_depth)};
-    const Lanes x[2] = {at(planes.x, t[0]), at(planes.x, t[1])};
-    const Lanes dx[2] = {at(planes.dx, t[0]), at(planes.dx, t[1])};
-    const Lanes y[2] = {at(planes.y, t[0]), at(planes.y, t[1])};
-    const Lanes dy[2] = {at(planes.dy, t[0]), at(planes.dy, t[1])};
-    const PixelSpans columns = pixel_spans(d, hn::Load(d, gathered.x.data() + i), support, x, dx);
-    const PixelSpans rows = pixel_spans(d, hn::Load(d, gathered.y.data() + i), support, y, dy);
-    // Thin: what it costs pixel by pixel is less than plane by plane.
-    const Lanes width = hn::Sub(columns.last, columns.first);
-    const Lanes height = hn::Sub(rows.last, rows.first);
-    const Lanes num_planes =
-        hn::MulAdd(hn::Sub(last_z, first_z), planes_per_depth, hn::Set(d, 1.0f));
-    const Lanes one = hn::Set(d, 1.0f), most = hn::Set(d, static_cast<float>(max_thin_pixels - 1));
-    const LaneMask fits = hn::Le(hn::Max(width, height), most);
-    const LaneMask pays = hn::Le(hn::Mul(hn::Add(width, one), hn::Add(height, one)),
-                                 hn::Mul(num_planes, hn::Set(d, thin_pixels_per_plane)));
-    const LaneMask thin = hn::And(reaches, hn::And(fits, pays));
-    const LaneMask other = hn::AndNot(thin, reaches);
-    hn::Store(hn::IfThenElse(other, support_sq, hn::Set(d, -1.0f)), d,
-              gathered.plane_support_sq.data() + i);
-    others += hn::CountTrue(d, other);
-
-    const auto whole = [&](Lanes v) HWY_ATTR { return hn::BitCast(du, hn::ConvertTo(di, v)); };
-    const Lanes first_column = hn::Max(columns.first, hn::Zero(d));
-    const Lanes last_column = hn::Min(columns.last, end);
-    const Lanes first_row = hn::Max(rows.first, hn::Zero(d)), last_row = hn::Min(rows.last, end);
-    const LaneMask in_area =
-        hn::And(hn::Le(first_column, last_column), hn::Le(first_row, last_row));
-    const auto listed = hn::RebindMask(du, hn::And(thin, in_area));
-    const auto box =
-        hn::Or(hn::Or(whole(first_column), hn::ShiftLeft<8>(whole(first_row))),
-               hn::Or(hn::ShiftLeft<16>(whole(last_column)), hn::ShiftLeft<24>(whole(last_row))));
-    const Lanes last_number = hn::Set(d, static_cast<float>(last_plane));
-    const Lanes first = hn::Mul(t[0], last_number), last = hn::Mul(t[1], last_number);
-    const auto kernel = numbers_from(static_cast<std::uint32_t>(i));
-    const Lanes size = hn::Add(hn::Max(width, height), one), rounding = hn::Set(d, 1e-3f);
-    for (std::uint32_t depth = 0; depth < num_depths; ++depth) {
-      const auto begin = static_cast<float>(depth * depth_lanes);
-      const LaneMask in_depth =
-          hn::And(hn::Le(hn::Sub(first, rounding), hn::Set(d, begin + depth_lanes - 1)),
-                  hn::Ge(hn::Add(last, rounding), hn::Set(d, begin)));
-      const auto here = hn::And(listed, hn::RebindMask(du, in_depth));
-      float above = 0;
-      for (std::size_t l = 0; l < out.size(); ++l) {
-        const auto most_pixels = static_cast<float>(thin_sizes[l]);
-        const LaneMask fits_list =
-            hn::And(hn::Gt(size, hn::Set(d, above)), hn::Le(size, hn::Set(d, most_pixels)));
-        out[l].append(kernel, box, depth, hn::And(here, hn::RebindMask(du, fits_list)));
-        above = most_pixels;
-      }
-    }
+    const Lanes support_sq = hn::Load(d, &gathered.support_sq[i]);
+    const Lanes z = hn::Load(d, &gathered.z[i]);
+    const Lanes t = part_of_depth(d, planes, z);
+    SupportParts whole;
+    whole.radius = hn::Sqrt(hn::Max(support_sq, hn::Zero(d)));
+    whole.from = hn::Zero(d);
+    whole.disc = whole.radius;
+    const Lanes two = hn::Set(d, 2.0f);
+    const Lanes dx = at_depth(d, planes.dx, t), dy = hn::Neg(at_depth(d, planes.dy, t));
+    const Lanes width = hn::Mul(two, whole.reach(d, planes.slope_x));
+    const Lanes height = hn::Mul(two, whole.reach(d, planes.slope_y));
+    const LaneMask fits =
+        hn::And(hn::Le(width, hn::Mul(most, dx)), hn::Le(height, hn::Mul(most, dy)));
+    const Lanes depth =
+        hn::Sub(hn::Min(hn::Add(z, whole.radius), far), hn::Max(hn::Sub(z, whole.radius), near));
+    const Lanes num_planes = hn::MulAdd(depth, per_step, one);
+    const Lanes vectors = hn::MulAdd(num_planes, hn::Set(d, 1.0f / depth_lanes), one);
+    const Lanes pixels = hn::Div(hn::Mul(width, height), hn::Mul(dx, dy));
+    const LaneMask pays =
+        hn::Le(hn::Mul(pixels, vectors), hn::Mul(num_planes, hn::Set(d, thin_pixels_per_plane)));
+    const LaneMask thin = hn::And(fits, pays);
+    hn::Store(hn::IfThenElse(thin, none, support_sq), d, &gathered.plane_support_sq[i]);
+    hn::Store(hn::IfThenElse(thin, support_sq, none), d, &gathered.thin_support_sq[i]);
+    others += hn::CountTrue(d, hn::And(hn::Not(thin), hn::Ge(support_sq, hn::Zero(d))));
   }
   return others;
 }
 
-/// A kernel's factors in a vector of planes, one for each column and row of its box.
-template <int kSize, class C>
+/// Thin kernels by their boxes' columns and rows.
+using ThinKernels = SortedKernels<std::size_t{max_thin_pixels * max_thin_pixels}>;
+
+/// First and last pixel of the area along an axis that kernels may reach; `any`: there are such.
+struct PixelSpan {
+  Lanes first, last;
+  LaneMask any;
+};
+
+/// Those within `reach` of the centre; `t`: see at_depth(). `places`, `spacings`: of pixel 0 and of
+/// pixels, on each of the planes.
+HWY_INLINE PixelSpan pixel_span(LaneTag d, const float* places, const float* spacings, Lanes center,
+                                Lanes reach, Lanes t) {
+  const Lanes per_spacing = hn::Div(hn::Set(d, 1.0f), at_depth(d, spacings, t));
+  const Lanes middle = hn::Mul(hn::Sub(center, at_depth(d, places, t)), per_spacing);
+  const Lanes half = hn::MulAdd(reach, hn::Abs(per_spacing), hn::Set(d, 1e-3f));
+  const Lanes end = hn::Set(d, static_cast<float>(AreaBuffer::size - 1));
+  const Lanes first = hn::Max(hn::Zero(d), hn::Ceil(hn::Sub(middle, half)));
+  const Lanes last = hn::Min(end, hn::Floor(hn::Add(middle, half)));
+  return {first, last, hn::Le(first, last)};
+}
+
+/// Finds the pixels that thin kernels reach in each vector of the planes.
+HWY_NOINLINE void find_pixels(const AreaPlanes& planes, const GatheredKernels& gathered,
+                              ThinKernels& out) {
+  const LaneTag d;
+  const hn::RebindToSigned<LaneTag> di;
+  const hn::RebindToUnsigned<LaneTag> du;
+  out.clear();
+  out.reserve(gathered.size * std::size_t{ColumnBuffer::planes / depth_lanes});
+  const auto whole = [&](Lanes v) HWY_ATTR { return hn::BitCast(du, hn::ConvertTo(di, v)); };
+  const Lanes rounding = hn::Set(d, 1e-3f * (planes.z[1] - planes.z[0]));
+  for (std::size_t i = 0; i < gathered.size; i += num_lanes) {
+    const Lanes support_sq = hn::Load(d, &gathered.thin_support_sq[i]);
+    const Lanes z = hn::Load(d, &gathered.z[i]);
+    for (int v = 0; v < ColumnBuffer::planes; v += depth_lanes) {
+      const Lanes before = hn::Sub(hn::Set(d, planes.z[v]), z);
+      const Lanes behind = hn::Sub(z, hn::Set(d, planes.z[v + depth_lanes - 1]));
+      SupportParts parts;
+      parts.from = hn::Max(hn::Zero(d), hn::Sub(hn::Max(before, behind), rounding));
+      const Lanes disc_sq = hn::NegMulAdd(parts.from, parts.from, support_sq);
+      const LaneMask reaches = hn::Gt(disc_sq, hn::Zero(d));
+      if (hn::AllFalse(d, reaches)) continue;
+      parts.radius = hn::Sqrt(hn::Max(support_sq, hn::Zero(d)));
+      parts.disc = hn::Sqrt(hn::Max(disc_sq, hn::Zero(d)));
+      const Lanes t = part_of_depth(d, planes, z);
+      const PixelSpan columns = pixel_span(d, planes.x, planes.dx, hn::Load(d, &gathered.x[i]),
+                                           parts.reach(d, planes.slope_x), t);
+      const PixelSpan rows = pixel_span(d, planes.y, planes.dy, hn::Load(d, &gathered.y[i]),
+                                        parts.reach(d, planes.slope_y), t);
+      const auto column = whole(columns.first), last_column = whole(columns.last);
+      const auto row = whole(rows.first), last_row = whole(rows.last);
+      const LaneMask in_area = hn::And(reaches, hn::And(columns.any, rows.any));
+      const auto key = hn::Add(hn::Mul(hn::Sub(last_column, column), hn::Set(du, max_thin_pixels)),
+                               hn::Sub(last_row, row));
+      out.append(d, in_area, key, numbers_from(static_cast<std::uint32_t>(i)),
+                 hn::Set(du, static_cast<std::uint32_t>(v)),
+                 box_of(column, row, last_column, last_row));
+    }
+  }
+  out.sort();
+}
+
+/// A thin kernel's factors in a vector of planes, one for each column and row of its box.
+template <int kColumns, class C>
 struct DepthFactors {
-  alignas(64) float column[kSize][depth_lanes], row[kSize][depth_lanes];
-  alignas(64) float column_slope[C::gradients ? kSize : 1][depth_lanes];
-  alignas(64) float row_slope[C::gradients ? kSize : 1][depth_lanes];
+  alignas(64) float column[kColumns][depth_lanes], row[max_thin_pixels][depth_lanes];
+  alignas(64) float column_slope[C::gradients ? kColumns : 1][depth_lanes];
+  alignas(64) float row_slope[C::gradients ? max_thin_pixels : 1][depth_lanes];
   alignas(64) float slope_z[depth_lanes];
 
-  /// Those of a vector of planes, the one that begins at plane `v`.
-  HWY_INLINE void fill(DepthTag d, const GatheredKernels& gathered, std::size_t k,
-                       const AreaPlanes& planes, const PixelBox& box, int v) {
+  HWY_INLINE void fill(DepthTag d, const GatheredKernels& gathered, const AreaPlanes& planes,
+                       const BoxedKernel& kernel) {
+    const std::size_t k = kernel.kernel, first = kernel.plane;
     const DepthLanes scale = hn::Set(d, gathered.exponent_scale[k]);
     const DepthLanes peak = hn::Set(d, gathered.peak[k]);
     const DepthLanes slope = hn::Mul(scale, hn::Set(d, 2 / std::numbers::log2e_v<float>));
-    const DepthLanes dz = hn::Sub(hn::Load(d, planes.z + v), hn::Set(d, gathered.z[k]));
+    const DepthLanes dz = hn::Sub(hn::Load(d, planes.z + first), hn::Set(d, gathered.z[k]));
     const DepthLanes dz_sq = hn::Mul(dz, dz);
     if constexpr (C::gradients) hn::Store(hn::Mul(dz, slope), d, slope_z);
-    const auto place = [&](const float* first, const float* step, float center,
+    // Places of the box's pixels, one after the other.
+    const auto place = [&](const float* places, const float* spacings, float center,
                            int pixel) MOTES_INLINE HWY_ATTR {
-      const DepthLanes from_first = hn::Sub(hn::Load(d, first + v), hn::Set(d, center));
-      return hn::MulAdd(hn::Set(d, static_cast<float>(pixel)), hn::Load(d, step + v), from_first);
+      const DepthLanes from_first = hn::Sub(hn::Load(d, places + first), hn::Set(d, center));
+      return hn::MulAdd(hn::Set(d, static_cast<float>(pixel)), hn::Load(d, spacings + first),
+                        from_first);
     };
-    for (int i = 0; i < kSize; ++i) {
-      const DepthLanes x = place(planes.x, planes.dx, gathered.x[k], box.column + i);
+    for (int i = 0; i < kColumns; ++i) {
+      const DepthLanes x = place(planes.x, planes.dx, gathered.x[k], kernel.box.column + i);
       hn::Store(hn::Mul(peak, factor_of(d, hn::Mul(scale, hn::Mul(x, x)))), d, column[i]);
       if constexpr (C::gradients) hn::Store(hn::Mul(x, slope), d, column_slope[i]);
     }
-    for (int i = 0; i < kSize; ++i) {
-      const DepthLanes y = place(planes.y, planes.dy, gathered.y[k], box.row + i);
+    for (int i = 0; i < kernel.box.rows(); ++i) {
+      const DepthLanes y = place(planes.y, planes.dy, gathered.y[k], kernel.box.row + i);
       hn::Store(factor_of(d, hn::Mul(scale, hn::MulAdd(y, y, dz_sq))), d, row[i]);
       if constexpr (C::gradients) hn::Store(hn::Mul(y, slope), d, row_slope[i]);
     }
   }
 };
 
-/// Adds a kernel to a vector of planes of the pixel in column `i` and row `j` of its box; `samples`
-/// is the field's channel 0 there. Returns how many samples lie inside of the support, if C::count.
-template <int kSize, class C>
-HWY_INLINE std::uint64_t add_to_pixel(DepthTag d, const DepthFactors<kSize, C>& factors,
-                                      DepthLanes cut, int i, int j, float* samples) {
-  const DepthLanes p = hn::Mul(hn::Load(d, factors.column[i]), hn::Load(d, factors.row[j]));
+/// What the pixels of a row have in common. Kept in registers, which the compiler could not know of
+/// factors: they might be among the samples.
+struct DepthRow {
+  DepthLanes row, slope, slope_z, cut;
+};
+
+/// Adds a kernel to a vector of planes of a pixel, in column `i` of its box; `samples` is the
+/// field's channel 0 there. Returns how many samples lie inside of the support, if C::count.
+template <int kColumns, class C>
+HWY_INLINE std::uint64_t add_to_pixel(DepthTag d, const DepthFactors<kColumns, C>& factors,
+                                      const DepthRow& row, std::size_t i, float* samples) {
+  const DepthLanes p = hn::Mul(row.row, hn::Load(d, factors.column[i]));
   const DepthLanes magnitude = hn::Abs(p);
-  const auto inside = hn::Ge(magnitude, cut);
+  const auto inside = hn::Ge(magnitude, row.cut);
   hn::Store(add_inside(d, inside, p, hn::Load(d, samples)), d, samples);
   if constexpr (C::gradients) {
     const DepthLanes phi = hn::IfThenElseZero(inside, p);
-    const auto add = [&](int channel, const float* slope) MOTES_INLINE HWY_ATTR {
-      float* const gradient = samples + channel * depth_lanes;
-      hn::Store(hn::MulAdd(phi, hn::Load(d, slope), hn::Load(d, gradient)), d, gradient);
+    const auto add = [&](int channel, DepthLanes slope) MOTES_INLINE HWY_ATTR {
+      float* const gradient = samples + channel * ColumnBuffer::planes;
+      hn::Store(hn::MulAdd(phi, slope, hn::Load(d, gradient)), d, gradient);
     };
-    add(1, factors.column_slope[i]);
-    add(2, factors.row_slope[j]);
-    add(3, factors.slope_z);
+    add(1, hn::Load(d, factors.column_slope[i]));
+    add(2, row.slope);
+    add(3, row.slope_z);
   }
   if constexpr (C::absolute) {
-    float* const absolute = samples + 4 * depth_lanes;
+    float* const absolute = samples + 4 * ColumnBuffer::planes;
     hn::Store(add_inside(d, inside, magnitude, hn::Load(d, absolute)), d, absolute);
   }
   return C::count ? hn::CountTrue(d, inside) : 0;
 }
 
-/// Adds thin kernels to the planes of `buffer`, all of them to kSize x kSize pixels: no branch
-/// depends on the box.
-template <int kSize, class C>
-HWY_NOINLINE void add_thin_kernels(const GatheredKernels& gathered, const ThinKernels& list,
-                                   const AreaPlanes& planes, const LiveGroups& live,
-                                   const SampleLayout& layout, ColumnBuffer& buffer,
+/// Marks the groups of a thin kernel's box; false if no ray is under way in them.
+HWY_INLINE bool touch_groups(const BoxedKernel& kernel, const LiveGroups& live,
+                             ColumnBuffer& buffer) {
+  const KernelBox& box = kernel.box;
+  const int first_row = box.row / AreaBuffer::group_size;
+  const int last_row = box.last_row / AreaBuffer::group_size;
+  const GroupBits groups = (2u << box.last_column / AreaBuffer::group_size) -
+                           (1u << box.column / AreaBuffer::group_size);
+  static_assert(max_thin_pixels <= 2 * AreaBuffer::group_size);
+  const int middle_row = (first_row + last_row) / 2;  // so at most three, without a loop
+  if (((live.row(first_row) | live.row(middle_row) | live.row(last_row)) & groups) == 0) {
+    return false;
+  }
+  for (const int row : {first_row, middle_row, last_row}) buffer.touched(row) |= groups;
+  return true;
+}
+
+/// Where thin kernels are added.
+struct ColumnSamples {
+  const AreaPlanes& planes;
+  const LiveGroups& live;
+  std::size_t field_floats;  ///< from a field of a pixel to the next
+  ColumnBuffer& buffer;
+};
+
+/// Some thin kernels with their factors: worked out for all before the first is added, they do not
+/// wait for each other.
+template <int kColumns, class C>
+struct ThinBatch {
+  static constexpr std::size_t most = 8;
+  struct Member {
+    float* samples;  ///< of the box's first pixel: the field's channel 0
+    int rows;
+    float cut;
+    DepthFactors<kColumns, C> factors;
+  };
+  Member members[most];
+  std::size_t count = 0;
+
+  /// Takes the next ones of `list`, but those without rays under way.
+  HWY_INLINE void fill(DepthTag d, const GatheredKernels& gathered, const ColumnSamples& samples,
+                       std::span<const BoxedKernel>& list) {
+    count = 0;
+    for (; !list.empty() && count < most; list = list.subspan(1)) {
+      const BoxedKernel& kernel = list[0];
+      if (!touch_groups(kernel, samples.live, samples.buffer)) continue;
+      Member& out = members[count++];
+      out.samples = samples.buffer.at(kernel.box.row, kernel.box.column) + kernel.plane +
+                    gathered.field[kernel.kernel] * samples.field_floats;
+      out.rows = kernel.box.rows();
+      out.cut = gathered.cut[kernel.kernel];
+      out.factors.fill(d, gathered, samples.planes, kernel);
+    }
+  }
+};
+
+/// Adds thin kernels whose boxes have kColumns columns.
+template <int kColumns, class C>
+HWY_NOINLINE void add_thin_kernels(const GatheredKernels& gathered,
+                                   std::span<const BoxedKernel> list, const ColumnSamples& samples,
                                    EvaluationCounts& counts) {
   const DepthTag d;
-  const std::size_t field_floats = static_cast<std::size_t>(layout.channels()) * depth_lanes;
-  const std::size_t depth_floats = field_floats * static_cast<std::size_t>(layout.num_fields);
-  for (std::size_t n = 0; n < list.size; ++n) {
-    const PixelBox box = list.box_of(n);
-    const int first_row = box.row / AreaBuffer::group_size;
-    const int last_row = box.last_row / AreaBuffer::group_size;
-    const GroupBits groups = (2u << box.last_column / AreaBuffer::group_size) -
-                             (1u << box.column / AreaBuffer::group_size);
-    static_assert(max_thin_pixels <= 2 * AreaBuffer::group_size);
-    const int middle_row = (first_row + last_row) / 2;  // so at most three, without a loop
-    if (((live.row(first_row) | live.row(middle_row) | live.row(last_row)) & groups) == 0) continue;
-    for (const int row : {first_row, middle_row, last_row}) buffer.touched(row) |= groups;
-    const std::size_t k = list.kernel[n], depth = list.depth[n];
-    const DepthLanes cut = hn::Set(d, gathered.cut[k]);
-    DepthFactors<kSize, C> factors;
-    factors.fill(d, gathered, k, planes, box, static_cast<int>(depth) * depth_lanes);
-    float* row_samples =
-        buffer.at(box.row, box.column) + depth * depth_floats + gathered.field[k] * field_floats;
-    for (int j = 0; j < kSize; ++j, row_samples += buffer.row_floats()) {
-      float* samples = row_samples;
-      for (int i = 0; i < kSize; ++i, samples += buffer.pixel_floats()) {
-        counts.inside_support += add_to_pixel(d, factors, cut, i, j, samples);
+  const std::size_t pixel_floats = samples.buffer.pixel_floats();
+  const std::size_t row_floats = samples.buffer.row_floats();
+  ThinBatch<kColumns, C> batch;
+  while (!list.empty()) {
+    batch.fill(d, gathered, samples, list);
+    for (std::size_t n = 0; n < batch.count; ++n) {
+      const auto& kernel = batch.members[n];
+      DepthRow row;
+      row.slope_z = hn::Load(d, kernel.factors.slope_z);
+      row.cut = hn::Set(d, kernel.cut);
+      float* first = kernel.samples;
+      for (int j = 0; j < kernel.rows; ++j, first += row_floats) {
+        row.row = hn::Load(d, kernel.factors.row[j]);
+        if constexpr (C::gradients) row.slope = hn::Load(d, kernel.factors.row_slope[j]);
+        float* pixel = first;
+        unroll<kColumns>([&](std::size_t i) MOTES_INLINE HWY_ATTR {
+          counts.inside_support += add_to_pixel(d, kernel.factors, row, i, pixel);
+          pixel += pixel_floats;
+        });
       }
+      counts.carried_out += static_cast<std::uint64_t>(kernel.rows) * kColumns * depth_lanes;
     }
-    counts.carried_out += std::uint64_t{kSize * kSize * depth_lanes};
   }
 }
 
-/// Adds all thin kernels to the planes of `buffer`.
+/// Adds thin kernels.
 template <class C>
-void sum_columns(const GatheredKernels& gathered, const ThinLists& lists, const AreaPlanes& planes,
-                 const LiveGroups& live, const SampleLayout& layout, ColumnBuffer& buffer,
-                 EvaluationCounts& counts) {
-  unroll<thin_sizes.size()>([&]<std::size_t kList>(std::integral_constant<std::size_t, kList>) {
-    add_thin_kernels<thin_sizes[kList], C>(gathered, lists[kList], planes, live, layout, buffer,
-                                           counts);
+void sum_columns(const GatheredKernels& gathered, const ThinKernels& kernels,
+                 const ColumnSamples& samples, EvaluationCounts& counts) {
+  unroll<max_thin_pixels>([&](auto i) HWY_ATTR {
+    const std::size_t first = i * max_thin_pixels;
+    add_thin_kernels<i + 1, C>(gathered, kernels.with_keys(first, first + max_thin_pixels), samples,
+                               counts);
   });
 }
 
-/// num_lanes vectors become their transpose.
-HWY_INLINE void transpose_block(LaneTag d, Lanes (&v)[num_lanes]) {
-  for (int y = 0; y < num_lanes; y += 4) {
-    transpose_fours(d, v[y], v[y + 1], v[y + 2], v[y + 3]);
-  }
-  // Vector 4 y + j now has, in its 128 bits q, the numbers 4 q + j of vectors 4 y to 4 y + 3.
+/// The planes of a batch of one block of pixels: a vector each.
+struct BatchOfBlock {
+  Lanes plane[ColumnBuffer::planes];
+};
+
+/// Takes a channel of a block from `in`, its first pixel's, where zeros are left.
+HWY_INLINE BatchOfBlock take_channel(LaneTag d, float* in, std::size_t pixel_floats,
+                                     std::size_t row_floats) {
+  constexpr int size = AreaBuffer::group_size;
+  const auto take = [&](auto tag, std::size_t pixel, std::size_t plane) MOTES_INLINE HWY_ATTR {
+    float* const at = in + pixel / size * row_floats + pixel % size * pixel_floats + plane;
+    const auto values = hn::Load(tag, at);
+    hn::Store(hn::Zero(tag), tag, at);
+    return values;
+  };
+  BatchOfBlock out;
 #if HWY_TARGET <= HWY_AVX3
-  static_assert(num_lanes == 16);
-  constexpr int even = _MM_SHUFFLE(2, 0, 2, 0), odd = _MM_SHUFFLE(3, 1, 3, 1);
-  for (int j = 0; j < 4; ++j) {
-    const Lanes low = hn::ConcatLowerLower(d, v[4 + j], v[j]);
-    const Lanes high = hn::ConcatUpperUpper(d, v[4 + j], v[j]);
-    const Lanes low2 = hn::ConcatLowerLower(d, v[12 + j], v[8 + j]);
-    const Lanes high2 = hn::ConcatUpperUpper(d, v[12 + j], v[8 + j]);
-    v[j] = Lanes{_mm512_shuffle_f32x4(low.raw, low2.raw, even)};
-    v[4 + j] = Lanes{_mm512_shuffle_f32x4(low.raw, low2.raw, odd)};
-    v[8 + j] = Lanes{_mm512_shuffle_f32x4(high.raw, high2.raw, even)};
-    v[12 + j] = Lanes{_mm512_shuffle_f32x4(high.raw, high2.raw, odd)};
-  }
+  static_assert(num_lanes == 2 * ColumnBuffer::planes);
+  const hn::Half<LaneTag> dh;
+  // Two pixels a vector, one of an even row of the group and that below it.
+  Lanes v[8];
+  unroll<8>([&](std::size_t i) MOTES_INLINE HWY_ATTR {
+    const std::size_t pixel = i % 4 + i / 4 * 8;
+    const auto upper = take(dh, pixel, 0), lower = take(dh, pixel + 4, 0);
+    v[i] = hn::Combine(d, lower, upper);
+  });
+  transpose_fours(d, v[0], v[1], v[2], v[3]);
+  transpose_fours(d, v[4], v[5], v[6], v[7]);
+  // Vector j now has planes j and 4 + j of row 0, then of row 1; vector 4 + j of rows 2 and 3.
+  unroll<4>([&](std::size_t j) MOTES_INLINE HWY_ATTR {
+    constexpr int even = _MM_SHUFFLE(2, 0, 2, 0), odd = _MM_SHUFFLE(3, 1, 3, 1);
+    // All lanes under a mask: without, the compiler warns of the intrinsic's own.
+    constexpr __mmask16 all = 0xffff;
+    out.plane[j] = Lanes{_mm512_maskz_shuffle_f32x4(all, v[j].raw, v[4 + j].raw, even)};
+    out.plane[4 + j] = Lanes{_mm512_maskz_shuffle_f32x4(all, v[j].raw, v[4 + j].raw, odd)};
+  });
 #elif HWY_TARGET <= HWY_AVX2
-  static_assert(num_lanes == 8);
-  for (int j = 0; j < 4; ++j) {
-    const Lanes low = hn::ConcatLowerLower(d, v[4 + j], v[j]);
-    v[4 + j] = hn::ConcatUpperUpper(d, v[4 + j], v[j]);
-    v[j] = low;
+  static_assert(num_lanes == ColumnBuffer::planes);
+  Lanes v[num_lanes];
+  unroll<num_lanes>([&](std::size_t i) MOTES_INLINE HWY_ATTR { v[i] = take(d, i, 0); });
+  transpose_fours(d, v[0], v[1], v[2], v[3]);
+  transpose_fours(d, v[4], v[5], v[6], v[7]);
+  // Vector j now has planes j and 4 + j of row 0; vector 4 + j of row 1.
+  unroll<4>([&](std::size_t j) MOTES_INLINE HWY_ATTR {
+    out.plane[j] = hn::ConcatLowerLower(d, v[4 + j], v[j]);
+    out.plane[4 + j] = hn::ConcatUpperUpper(d, v[4 + j], v[j]);
+  });
+#else
+  for (std::size_t plane = 0; plane < ColumnBuffer::planes; plane += num_lanes) {
+    Lanes v[num_lanes];
+    for (std::size_t i = 0; i < num_lanes; ++i) v[i] = take(d, i, plane);
+    transpose_fours(d, v[0], v[1], v[2], v[3]);
+    for (std::size_t j = 0; j < num_lanes; ++j) out.plane[plane + j] = v[j];
   }
 #endif
+  return out;
 }
 
-/// Moves what a group of pixels holds in `columns`, which is zero there afterwards, to `num_planes`
-/// planes of the area, where nothing else may be yet. Planes without any kernel stay untouched.
-HWY_NOINLINE void move_group(ColumnBuffer& columns, int row, int column, int num_planes,
-                             const SampleLayout& layout, AreaBuffer& area) {
-  constexpr int size = AreaBuffer::group_size;
+/// A group of an area on the planes of a batch, while it is taken from where it was summed.
+struct GroupSamples {
+  ColumnBuffer& columns;
+  AreaBuffer& area;
+  int row, column;
+  float* out;  ///< laid out like a group of `area`
+
+  float* first_pixel(int block) const {
+    constexpr int size = AreaBuffer::group_size;
+    return columns.at(size * row + block * block_rows, size * column);
+  }
+};
+
+/// Takes a channel of a block of the group from the columns, adds what the area holds of it on
+/// planes `summed`, and writes both.
+HWY_INLINE BatchOfBlock take_block(LaneTag d, const GroupSamples& group, int block, int channel,
+                                   AreaBuffer::PlaneBits summed) {
+  const AreaBuffer& area = group.area;
+  const std::size_t at = static_cast<std::size_t>(block) * area.block_floats() +
+                         static_cast<std::size_t>(channel * num_lanes);
+  BatchOfBlock batch = take_channel(d, group.first_pixel(block) + channel * ColumnBuffer::planes,
+                                    group.columns.pixel_floats(), group.columns.row_floats());
+  if (HWY_UNLIKELY(summed != 0)) {
+    const float* const sums = group.area.at(group.row, group.column) + at;
+    for (std::size_t k = 0; k < ColumnBuffer::planes; ++k) {
+      if ((summed >> k & 1) == 0) continue;
+      batch.plane[k] = hn::Add(batch.plane[k], hn::Load(d, sums + k * area.plane_floats()));
+    }
+  }
+  float* out = group.out + at;
+  unroll<ColumnBuffer::planes>([&](std::size_t k) MOTES_INLINE HWY_ATTR {
+    hn::Store(batch.plane[k], d, out);
+    out += area.plane_floats();
+  });
+  return batch;
+}
+
+/// The same for a field's values, channel `channel`: bit k tells that plane k may be seen.
+HWY_NOINLINE std::uint64_t take_values(const GroupSamples& group, int block, int channel,
+                                       AreaBuffer::PlaneBits summed, const Visibility& visibility) {
   const LaneTag d;
-  const int num_channels = layout.num_fields * layout.channels();
-  AreaBuffer::PlaneBits* const touched = area.touched(row, column);
+  const BatchOfBlock batch = take_block(d, group, block, channel, summed);
+  std::uint64_t visible = 0;
+  unroll<ColumnBuffer::planes>([&](std::size_t k) MOTES_INLINE HWY_ATTR {
+    visible |= std::uint64_t{may_be_seen(d, batch.plane[k], visibility)} << k;
+  });
+  return visible;
+}
+
+/// The same for channels `first` to last - 1, of all blocks.
+HWY_NOINLINE void take_channels(const GroupSamples& group, int first, int last,
+                                AreaBuffer::PlaneBits summed) {
   for (int block = 0; block < group_blocks; ++block) {
-    float* const out = area.at(row, column) + static_cast<std::size_t>(block) * area.block_floats();
-    float* const first = columns.at(size * row + block * block_rows, size * column);
-    const int num_floats = num_channels * ColumnBuffer::planes;
-    for (int at = 0; at < num_floats; at += num_lanes) {
-      Lanes v[num_lanes];
-      for (int pixel = 0; pixel < num_lanes; ++pixel) {
-        float* const in = first + static_cast<std::size_t>(pixel / size) * columns.row_floats() +
-                          static_cast<std::size_t>(pixel % size) * columns.pixel_floats() + at;
-        v[pixel] = hn::Load(d, in);
-        hn::Store(hn::Zero(d), d, in);
-      }
-      transpose_block(d, v);
-      // Planes of one channel or, where vectors of planes are shorter, of some in turn.
-      for (int part = 0; part < num_lanes / depth_lanes; ++part) {
-        const int unit = at / depth_lanes + part;
-        const int channel = unit % num_channels, plane = unit / num_channels * depth_lanes;
-        AreaBuffer::PlaneBits any = 0;
-        float* to =
-            out + static_cast<std::size_t>(plane) * area.plane_floats() + channel * num_lanes;
-        for (int k = 0; k < std::min(depth_lanes, num_planes - plane); ++k) {
-          const Lanes values = v[part * depth_lanes + k];
-          hn::Store(values, d, to);
-          to += area.plane_floats();
-          any |= (hn::AllTrue(d, hn::Eq(values, hn::Zero(d))) ? 0u : 1u) << k;
-        }
-        touched[channel / layout.channels()] |= any << plane;
+    for (int c = first; c < last; ++c) take_block(LaneTag(), group, block, c, summed);
+  }
+}
+
+/// Sets channels `first` to last - 1 of a group to zero in the columns.
+HWY_NOINLINE void drop_channels(const GroupSamples& group, int first, int last) {
+  const DepthTag d;
+  constexpr int size = AreaBuffer::group_size;
+  for (int y = 0; y < size; ++y) {
+    for (int x = 0; x < size; ++x) {
+      float* const at = group.columns.at(size * group.row + y, size * group.column + x);
+      for (int i = first * ColumnBuffer::planes; i < last * ColumnBuffer::planes;
+           i += depth_lanes) {
+        hn::Store(hn::Zero(d), d, at + i);
       }
     }
   }

@@ -16,6 +16,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/aligned.h"
 #include "field/sweep-inl.h"
 #include "field/sweep_columns-inl.h"
 #include "integrate/integrate-inl.h"
@@ -32,10 +33,11 @@ namespace HWY_NAMESPACE {
 /// What the sweep of an area works with: a few MB, kept by each thread.
 struct SweepMemory {
   GatheredKernels gathered;
+  ThinKernels thin;
   PlaneKernels plane_kernels;
-  AreaBuffer buffer;
-  ThinLists thin;
   ColumnBuffer columns;
+  AreaBuffer buffer;
+  AlignedVector<float> group;          ///< laid out like one of `buffer`
   std::vector<std::uint64_t> visible;  ///< of a group: [block][field], a bit a plane
   static constexpr int num_blocks = AreaBuffer::groups * AreaBuffer::groups * group_blocks;
   std::vector<RayState> blocks = std::vector<RayState>(num_blocks);  ///< as in AreaBuffer
@@ -48,19 +50,14 @@ constexpr std::size_t first_block(int row, int column) {
   return static_cast<std::size_t>(row * AreaBuffer::groups + column) * std::size_t{group_blocks};
 }
 
-/// Bytes of samples that are worked on together: all planes of a slab for a few fields.
-inline constexpr std::size_t batch_bytes = 4096 << 10;
-
 /// Kernels on planes that are added in one go: planes are taken together until there are so many.
 inline constexpr std::size_t kernels_at_once = 1024;
 
-/// Planes that are sampled before they are integrated.
-inline int planes_at_once(const FrameContext& context, const SampleLayout& layout) {
-  const std::size_t plane_bytes =
-      layout.floats_per_sample() * sizeof(float) *
-      std::size_t{AreaBuffer::groups * AreaBuffer::groups * group_blocks};
-  return std::clamp(static_cast<int>(batch_bytes / plane_bytes), 1,
-                    std::min(context.samples_per_pass, AreaBuffer::max_planes));
+/// Planes of a slab, whose kernels are found together: whole batches, which are sampled and
+/// integrated one after the other.
+inline int planes_of_slab(const FrameContext& context) {
+  constexpr int batch = AreaBuffer::planes, most = 4 * batch;
+  return std::clamp(context.samples_per_pass, batch, most) / batch * batch;
 }
 
 /// An area being rendered.
@@ -73,7 +70,6 @@ class AreaSweep {
         bounds_(make_ray_bounds(context, area.x, area.y, AreaBuffer::size, AreaBuffer::size)),
         layout_(make_layout(context)),
         field_floats_(static_cast<std::size_t>(layout_.channels() * layout_.lanes)),
-        planes_at_once_(planes_at_once(context, layout_)),
         integrator_(context.classifiers, context.shading, layout_),
         memory_(memory),
         counts_(counts),
@@ -83,7 +79,7 @@ class AreaSweep {
 
   void run(Framebuffer& image) {
     start();
-    const int planes = std::min(context_.samples_per_pass, AreaBuffer::max_planes);
+    const int planes = planes_of_slab(context_);
     for (SampleIndex begin = begin_; begin <= end_; begin += planes) {
       sweep_slab({begin, std::min(end_ - begin + 1, planes)});
     }
@@ -153,83 +149,110 @@ class AreaSweep {
                    make_frustum(bounds_, frame, context_.view), memory_.gathered);
     clock_.lap(Stage::traverse);
     if (memory_.gathered.size == 0 && !integrator_.zero_shows()) return;
-    memory_.buffer.reserve(layout_, planes_at_once_);
-    for (int begin = 0; begin < slab.count; begin += planes_at_once_) {
-      const Slab batch{slab.first + begin, std::min(planes_at_once_, slab.count - begin)};
-      if (begin > 0 && !find_live(batch)) break;
-      sample(frame, begin, batch.count);
-      integrate_area(batch);
+    num_others_ = find_thin_kernels(place_planes(bounds_, frame, 0), slab.count, memory_.gathered);
+    clock_.lap(Stage::cull);
+    memory_.buffer.reserve(layout_);
+    memory_.columns.reserve(layout_);
+    memory_.group.resize(memory_.buffer.group_floats());
+    for (int begin = 0; begin < slab.count; begin += AreaBuffer::planes) {
+      const Slab batch{slab.first + begin, std::min(AreaBuffer::planes, slab.count - begin)};
+      if (begin > 0 && !find_live(batch)) return;
+      render_batch(frame, begin, batch);
     }
   }
 
-  /// Pass 1 for planes `first` to first + count - 1 of the slab.
-  void sample(const SlabFrame& frame, int first, int count) {
+  /// Samples and integrates the planes of a batch, the first of which is plane `first` of the slab.
+  void render_batch(const SlabFrame& frame, int first, const Slab& batch) {
     if (context_.count_inside) {
-      sample_channels<Channels<false, false, true>>(frame, first, count);
+      render_channels<Channels<false, false, true>>(frame, first, batch);
     } else if (!context_.gradients) {
-      sample_channels<Channels<false, false>>(frame, first, count);
+      render_channels<Channels<false, false>>(frame, first, batch);
     } else if (context_.absolute) {
-      sample_channels<Channels<true, true>>(frame, first, count);
+      render_channels<Channels<true, true>>(frame, first, batch);
     } else {
-      sample_channels<Channels<true, false>>(frame, first, count);
+      render_channels<Channels<true, false>>(frame, first, batch);
     }
   }
 
   template <class C>
-  void sample_channels(const SlabFrame& frame, int first, int count) {
+  void render_channels(const SlabFrame& frame, int first, const Slab& batch) {
     EvaluationCounts evaluations;
-    const AreaPlanes planes = place_planes(bounds_, frame, first, count);
-    const std::size_t others = find_thin_kernels(planes, memory_.gathered, memory_.thin);
+    if (num_others_ != 0) sum_by_planes<C>(frame, first, batch.count, evaluations);
+    const AreaPlanes planes = place_planes(bounds_, frame, first);
+    find_pixels(planes, memory_.gathered, memory_.thin);
     clock_.lap(Stage::cull);
-    const bool any_thin = any_kernel(memory_.thin);
-    if (any_thin) {
-      memory_.columns.reserve(layout_);
-      sum_columns<C>(memory_.gathered, memory_.thin, planes, live_, layout_, memory_.columns,
-                     evaluations);
-      move_columns(count);
-    }
-    std::array<AreaPlane, AreaBuffer::max_planes> each_plane;
-    for (int k = 0; k < count && others != 0;) {
+    const auto column_floats = static_cast<std::size_t>(layout_.channels() * ColumnBuffer::planes);
+    sum_columns<C>(memory_.gathered, memory_.thin, {planes, live_, column_floats, memory_.columns},
+                   evaluations);
+    clock_.lap(Stage::sums);
+    for (int row = 0; row < AreaBuffer::groups; ++row) integrate_row(row, batch);
+    clock_.lap(Stage::integrate);
+    counts_.kernel_evaluations += evaluations.carried_out;
+    counts_.evaluations_inside += evaluations.inside_support;
+  }
+
+  /// Adds the kernels that are not thin to planes `first` to first + count - 1 of the slab.
+  template <class C>
+  void sum_by_planes(const SlabFrame& frame, int first, int count, EvaluationCounts& evaluations) {
+    std::array<AreaPlane, AreaBuffer::planes> planes;
+    for (int k = 0; k < count;) {
       memory_.plane_kernels.clear();
       for (; k < count && memory_.plane_kernels.size() < kernels_at_once; ++k) {
-        AreaPlane& plane = each_plane[static_cast<std::size_t>(k)];
+        AreaPlane& plane = planes[static_cast<std::size_t>(k)];
         plane = place_plane(bounds_, frame, first + k);
         find_boxes(memory_.gathered, plane, k, memory_.plane_kernels);
       }
       memory_.plane_kernels.sort();
       clock_.lap(Stage::cull);
       sum_planes<C>(memory_.gathered, memory_.plane_kernels,
-                    {each_plane.data(), memory_.buffer, field_floats_, live_}, evaluations);
+                    {planes.data(), memory_.buffer, field_floats_, live_}, evaluations);
       clock_.lap(Stage::sums);
     }
-    counts_.kernel_evaluations += evaluations.carried_out;
-    counts_.evaluations_inside += evaluations.inside_support;
   }
 
-  void move_columns(int num_planes) {
-    for (int row = 0; row < AreaBuffer::groups; ++row) {
-      GroupBits& touched = memory_.columns.touched(row);
-      for (; touched != 0; touched &= touched - 1) {
-        move_group(memory_.columns, row, std::countr_zero(touched), num_planes, layout_,
-                   memory_.buffer);
+  /// Pass 2 for a row of groups, whose samples are zero afterwards.
+  void integrate_row(int row, const Slab& batch) {
+    const GroupBits thin = memory_.columns.touched(row);
+    for (int column = 0; column < AreaBuffer::groups; ++column) {
+      const bool live = (live_.row(row) >> column & 1) != 0;
+      if ((thin >> column & 1) != 0) {
+        integrate_columns(row, column, live, batch);
+      } else if (live && find_visible(row, column, batch.count)) {
+        integrate_group(row, column, memory_.buffer.at(row, column), batch);
+      }
+      clear(row, column);
+    }
+    memory_.columns.touched(row) = 0;
+  }
+
+  /// Pass 2 for a group that thin kernels reach. Gradients are taken only where they are asked for.
+  void integrate_columns(int row, int column, bool live, const Slab& batch) {
+    const GroupSamples group{memory_.columns, memory_.buffer, row, column, memory_.group.data()};
+    const AreaBuffer::PlaneBits* const summed = memory_.buffer.touched(row, column);
+    const std::uint64_t planes = ~(~std::uint64_t{0} << batch.count);
+    const int channels = layout_.channels();
+    std::uint64_t any = 0;
+    auto visible = memory_.visible.begin();
+    for (int block = 0; block < group_blocks; ++block) {
+      for (int f = 0; f < layout_.num_fields; ++f, ++visible) {
+        const Visibility& visibility = context_.classifiers[static_cast<std::size_t>(f)].visibility;
+        *visible = planes & take_values(group, block, f * channels, summed[f], visibility);
+        any |= *visible;
       }
     }
-    clock_.lap(Stage::sums);
-  }
-
-  /// Pass 2 for the planes of the buffer, which is zero again afterwards.
-  void integrate_area(const Slab& batch) {
-    for (int row = 0; row < AreaBuffer::groups; ++row) {
-      for (int column = 0; column < AreaBuffer::groups; ++column) {
-        const bool live = (live_.row(row) >> column & 1) != 0;
-        if (live && find_visible(row, column, batch.count)) integrate_group(row, column, batch);
-        clear(row, column);
+    const bool seen = live && any != 0;
+    for (int f = 0; f < layout_.num_fields && channels > 1; ++f) {
+      const int first = f * channels + 1, last = (f + 1) * channels;
+      if (seen) {
+        take_channels(group, first, last, summed[f]);
+      } else {
+        drop_channels(group, first, last);
       }
     }
-    clock_.lap(Stage::integrate);
+    if (seen) integrate_group(row, column, group.out, batch);
   }
 
-  /// Sets memory_.visible for a group; true if anything may be seen.
+  /// Sets memory_.visible for a group of the buffer; true if anything may be seen.
   bool find_visible(int row, int column, int num_planes) {
     const LaneTag d;
     const std::size_t num_fields = context_.classifiers.size();
@@ -255,10 +278,9 @@ class AreaSweep {
     return any != 0;
   }
 
-  void integrate_group(int row, int column, const Slab& batch) {
+  void integrate_group(int row, int column, const float* samples, const Slab& batch) {
     const std::size_t num_fields = context_.classifiers.size();
     const std::uint64_t* visible = memory_.visible.data();
-    const float* samples = memory_.buffer.at(row, column);
     std::size_t b = first_block(row, column);
     for (int v = 0; v < group_blocks; ++v, ++b, visible += num_fields) {
       if (std::any_of(visible, visible + num_fields,
@@ -298,12 +320,12 @@ class AreaSweep {
   const RayBounds bounds_;
   const SampleLayout layout_;
   const std::size_t field_floats_;  ///< of a block
-  const int planes_at_once_;        ///< in the buffer
   const Integrator integrator_;
   SweepMemory& memory_;
   TileCounts& counts_;
   StageClock clock_;
   LiveGroups live_;                   ///< groups with rays under way
+  std::size_t num_others_ = 0;        ///< kernels of the slab that are not thin
   SampleIndex begin_ = 0, end_ = -1;  ///< of all rays at first
 };
 

@@ -18,8 +18,8 @@ namespace motes {
 struct RenderOptions {
   int threads = 0;  ///< 0: all of the machine's
   /// Planes of samples of one pass over the tree (paper, section 4.2); 0: the whole ray in one
-  /// pass; nullopt: 32 for one field, 64 / M for M fields. The sweep takes 16, and
-  /// no more if it is told so.
+  /// pass; nullopt: 32 for one field, 64 / M for M fields. The sweep takes 16, if it is told so 8
+  /// to 32, in whole eights.
   std::optional<int> samples_per_pass;
   Progress* progress = nullptr;
   /// Fills RenderStatistics::evaluations_inside too, if the engine is the sweep. For a frame of its

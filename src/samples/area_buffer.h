@@ -20,26 +20,23 @@ class AreaBuffer {
   static constexpr int groups = 16;                 ///< of a row and of a column of the area
   static constexpr int size = groups * group_size;  ///< pixels of a side
   static constexpr int group_pixels = group_size * group_size;
-  static constexpr int max_planes = 16;
+  static constexpr int planes = 8;  ///< sampled before they are integrated: a batch
 
   /// Planes of a group, a bit each.
   using PlaneBits = std::uint32_t;
 
-  /// Makes room for `num_planes` planes of that layout. Samples keep what they hold if that is the
-  /// layout already; else all are zero and untouched.
-  void reserve(const SampleLayout& layout, int num_planes) {
+  /// Makes room for that layout. Samples keep what they hold if that is the layout already; else
+  /// all are zero and untouched.
+  void reserve(const SampleLayout& layout) {
     const std::size_t block_floats = layout.floats_per_sample();
     const auto num_fields = static_cast<std::size_t>(layout.num_fields);
-    if (block_floats == block_floats_ && num_fields == num_fields_ && layout.lanes == lanes_ &&
-        num_planes == num_planes_) {
+    if (block_floats == block_floats_ && num_fields == num_fields_ && layout.lanes == lanes_)
       return;
-    }
     lanes_ = layout.lanes;
-    num_planes_ = num_planes;
     block_floats_ = block_floats;
     plane_floats_ = block_floats * static_cast<std::size_t>(group_pixels / lanes_);
     // A plane of room to spare: groups whose distance is a power of two would share cache sets.
-    group_floats_ = plane_floats_ * static_cast<std::size_t>(num_planes + 1);
+    group_floats_ = plane_floats_ * std::size_t{planes + 1};
     num_fields_ = num_fields;
     values_.assign(groups * row_floats(), 0.0f);
     touched_.assign(groups * groups * num_fields_, 0);
@@ -64,7 +61,7 @@ class AreaBuffer {
   std::size_t num_fields() const { return num_fields_; }
 
  private:
-  int lanes_ = 0, num_planes_ = 0;
+  int lanes_ = 0;
   std::size_t num_fields_ = 0;
   std::size_t block_floats_ = 0, plane_floats_ = 0, group_floats_ = 0;
   AlignedVector<float> values_;

@@ -12,13 +12,12 @@
 
 namespace motes {
 
-/// Samples of 64 x 64 pixels: [row of pixels][column of pixels][vector of planes][field][channel]
-/// [plane of the vector]. A few pixels beyond the area may be written and are never read: a kernel
-/// at the area's edge needs no care.
+/// Samples of 64 x 64 pixels on the planes of an AreaBuffer: [row of pixels][column of
+/// pixels][field][channel][plane].
 class ColumnBuffer {
  public:
-  static constexpr int planes = 16;
-  static constexpr int padded = AreaBuffer::size + 2 * AreaBuffer::group_size;
+  static constexpr int planes = AreaBuffer::planes;
+  static constexpr int size = AreaBuffer::size;
 
   /// Makes room for that layout; if it is the layout already, samples keep what they hold, else all
   /// are zero and untouched.
@@ -28,12 +27,13 @@ class ColumnBuffer {
                                      static_cast<std::size_t>(planes);
     if (pixel_floats == pixel_floats_) return;
     pixel_floats_ = pixel_floats;
-    values_.assign(static_cast<std::size_t>(padded) * row_floats(), 0.0f);
+    values_.assign(size * row_floats(), 0.0f);
     touched_.fill(0);
   }
 
   std::size_t pixel_floats() const { return pixel_floats_; }
-  std::size_t row_floats() const { return padded * pixel_floats_; }
+  // Two pixels of room to spare: rows whose distance is a power of two would share cache sets.
+  std::size_t row_floats() const { return (size + 2) * pixel_floats_; }
 
   /// First float of a pixel. Hot: unchecked.
   float* at(int row, int column) {

@@ -305,7 +305,7 @@ TEST_F(Bench, Fig6CutsOutOnePartAfterTheOther) {
 TEST_F(Bench, Fig7EndsRaysEarlyAndLate) {
   measure("fig7 zeolite");
   const auto rows = result("fig7")["rows"];
-  ASSERT_EQ(rows.size(), 2U * (8 + 4 + 5));
+  ASSERT_EQ(rows.size(), 2U * (8 + 3 + 5));
   EXPECT_EQ(rows[0]["termination_opacity"], 0.5);
   EXPECT_EQ(rows[7]["termination_opacity"], 1);
   EXPECT_LT(rows[0]["samples_per_ray"], rows[7]["samples_per_ray"]);

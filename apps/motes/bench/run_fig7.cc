@@ -15,7 +15,7 @@ namespace {
 
 constexpr double opacities[] = {0.5, 0.7, 0.8, 0.9, 0.95, 0.97, 0.99, 1};
 constexpr int coherent_passes[] = {8, 16, 32, 64, 128};
-constexpr int sweep_passes[] = {4, 8, 16, 32};
+constexpr int sweep_passes[] = {8, 16, 32};
 /// A frame that takes longer is measured once.
 constexpr double patience_ms = 5000;
 
