@@ -93,6 +93,7 @@ TEST_F(Bench, Table2ComparesEnginesInBothViews) {
       const auto& pair = row[lighting];
       const double ratio = pair["coherent_over_sweep"];
       EXPECT_TRUE(std::isfinite(ratio) && ratio > 0) << row;
+      EXPECT_GT(pair["coherent_over_sweep_at_most"], ratio) << row;
       EXPECT_EQ(pair["sweep"]["samples"], pair["coherent"]["samples"]);
     }
     EXPECT_EQ(row["lit"]["sweep"]["samples"], row["unlit"]["sweep"]["samples"]);
