@@ -44,7 +44,6 @@ struct AreaPlanes {
   alignas(64) float x[ColumnBuffer::planes], dx[ColumnBuffer::planes];
   alignas(64) float y[ColumnBuffer::planes], dy[ColumnBuffer::planes];
   alignas(64) float z[ColumnBuffer::planes];
-  float slope_x, slope_y;  ///< the most that a ray moves across the view, per depth
 };
 
 /// Planes `first` to first + ColumnBuffer::planes - 1 of the slab; those beyond it are the next
@@ -59,25 +58,48 @@ inline AreaPlanes place_planes(const RayBounds& area, const SlabFrame& frame, in
     planes.dy[k] = plane.dy;
     planes.z[k] = plane.z;
   }
-  const auto steepest = [](const Range& direction) {
-    return static_cast<float>(std::max(std::abs(direction.low), std::abs(direction.high)));
-  };
-  planes.slope_x = steepest(area.direction_x);
-  planes.slope_y = steepest(area.direction_y);
   return planes;
 }
 
-/// A quantity that is linear in depth, at `t` times the way from the first of the planes to the
-/// last.
-HWY_INLINE Lanes at_depth(LaneTag d, const float* values, Lanes t) {
-  const float difference = values[ColumnBuffer::planes - 1] - values[0];
-  return hn::MulAdd(t, hn::Set(d, difference), hn::Set(d, values[0]));
-}
+/// What grows evenly with depth, which is relative to the frame.
+struct LinearInDepth {
+  float at_zero, per_depth;
+  HWY_INLINE Lanes at(LaneTag d, Lanes z) const {
+    return hn::MulAdd(z, hn::Set(d, per_depth), hn::Set(d, at_zero));
+  }
+};
 
-/// That part of the way for depth z.
-HWY_INLINE Lanes part_of_depth(LaneTag d, const AreaPlanes& planes, Lanes z) {
-  const float per_depth = 1 / (planes.z[ColumnBuffer::planes - 1] - planes.z[0]);
-  return hn::Mul(hn::Sub(z, hn::Set(d, planes.z[0])), hn::Set(d, per_depth));
+/// The area's columns of pixels, or its rows, at any depth of a slab: the place of the first and
+/// the distance to the next, which is negative for rows. `steepest`: the most that a ray of the
+/// image moves across them, per depth.
+struct PixelLines {
+  LinearInDepth first, step;
+  float steepest;
+};
+
+struct AreaPixels {
+  PixelLines columns, rows;
+};
+
+/// `in_image`: bounds of those of the area's rays that are the image's.
+inline AreaPixels place_pixels(const RayBounds& area, const RayBounds& in_image,
+                               const SlabFrame& frame) {
+  const auto linear = [&](double origin, double direction, double reference) {
+    return LinearInDepth{static_cast<float>(origin + frame.reference_depth * direction - reference),
+                         static_cast<float>(direction)};
+  };
+  constexpr double steps = AreaBuffer::size - 1;
+  const auto lines = [&](double origin, double direction, double last_origin, double last_direction,
+                         double reference, const Range& slopes) {
+    return PixelLines{
+        linear(origin, direction, reference),
+        linear((last_origin - origin) / steps, (last_direction - direction) / steps, 0),
+        static_cast<float>(std::max(std::abs(slopes.low), std::abs(slopes.high)))};
+  };
+  return {lines(area.origin_x.low, area.direction_x.low, area.origin_x.high, area.direction_x.high,
+                frame.reference_x, in_image.direction_x),
+          lines(area.origin_y.high, area.direction_y.high, area.origin_y.low, area.direction_y.low,
+                frame.reference_y, in_image.direction_y)};
 }
 
 /// Parts of supports that lie `from` or more before their centres, or behind.
@@ -94,45 +116,49 @@ struct SupportParts {
   }
 };
 
+/// How many kernels of either shape may reach a slab.
+struct ShapeCounts {
+  std::size_t thin = 0, others = 0;
+};
+
 /// Tells thin kernels from others: they cover few pixels, and pixel by pixel cost less than plane
-/// by plane. Sets support_sq of either shape. `planes` are the slab's first, `count` its planes.
-/// Returns how many of the other shape may reach the slab.
-HWY_NOINLINE std::size_t find_thin_kernels(const AreaPlanes& planes, int count,
+/// by plane. Sets support_sq of either shape.
+HWY_NOINLINE ShapeCounts find_thin_kernels(const AreaPixels& pixels, const SlabFrame& frame,
                                            GatheredKernels& gathered) {
   const LaneTag d;
-  const float step = planes.z[1] - planes.z[0];
-  const Lanes near = hn::Set(d, planes.z[0]);
-  const Lanes far = hn::Set(d, planes.z[0] + static_cast<float>(count - 1) * step);
-  const Lanes per_step = hn::Set(d, 1 / step), one = hn::Set(d, 1.0f), none = hn::Set(d, -1.0f);
+  const Lanes near = hn::Set(d, frame.first_depth), per_step = hn::Set(d, 1 / frame.step);
+  const Lanes far =
+      hn::MulAdd(hn::Set(d, static_cast<float>(frame.count - 1)), hn::Set(d, frame.step), near);
+  const Lanes one = hn::Set(d, 1.0f), two = hn::Set(d, 2.0f), none = hn::Set(d, -1.0f);
   const Lanes most = hn::Set(d, max_thin_pixels - 0.02f);  // room for rounding
-  std::size_t others = 0;
+  ShapeCounts counts;
   for (std::size_t i = 0; i < gathered.size; i += num_lanes) {
     const Lanes support_sq = hn::Load(d, &gathered.support_sq[i]);
+    const LaneMask there = hn::Ge(support_sq, hn::Zero(d));
     const Lanes z = hn::Load(d, &gathered.z[i]);
-    const Lanes t = part_of_depth(d, planes, z);
     SupportParts whole;
     whole.radius = hn::Sqrt(hn::Max(support_sq, hn::Zero(d)));
     whole.from = hn::Zero(d);
     whole.disc = whole.radius;
-    const Lanes two = hn::Set(d, 2.0f);
-    const Lanes dx = at_depth(d, planes.dx, t), dy = hn::Neg(at_depth(d, planes.dy, t));
-    const Lanes width = hn::Mul(two, whole.reach(d, planes.slope_x));
-    const Lanes height = hn::Mul(two, whole.reach(d, planes.slope_y));
+    const Lanes dx = pixels.columns.step.at(d, z), dy = hn::Neg(pixels.rows.step.at(d, z));
+    const Lanes width = hn::Mul(two, whole.reach(d, pixels.columns.steepest));
+    const Lanes height = hn::Mul(two, whole.reach(d, pixels.rows.steepest));
     const LaneMask fits =
         hn::And(hn::Le(width, hn::Mul(most, dx)), hn::Le(height, hn::Mul(most, dy)));
     const Lanes depth =
         hn::Sub(hn::Min(hn::Add(z, whole.radius), far), hn::Max(hn::Sub(z, whole.radius), near));
     const Lanes num_planes = hn::MulAdd(depth, per_step, one);
     const Lanes vectors = hn::MulAdd(num_planes, hn::Set(d, 1.0f / depth_lanes), one);
-    const Lanes pixels = hn::Div(hn::Mul(width, height), hn::Mul(dx, dy));
-    const LaneMask pays =
-        hn::Le(hn::Mul(pixels, vectors), hn::Mul(num_planes, hn::Set(d, thin_pixels_per_plane)));
-    const LaneMask thin = hn::And(fits, pays);
+    const Lanes num_pixels = hn::Div(hn::Mul(width, height), hn::Mul(dx, dy));
+    const LaneMask pays = hn::Le(hn::Mul(num_pixels, vectors),
+                                 hn::Mul(num_planes, hn::Set(d, thin_pixels_per_plane)));
+    const LaneMask thin = hn::And(there, hn::And(fits, pays));
     hn::Store(hn::IfThenElse(thin, none, support_sq), d, &gathered.plane_support_sq[i]);
     hn::Store(hn::IfThenElse(thin, support_sq, none), d, &gathered.thin_support_sq[i]);
-    others += hn::CountTrue(d, hn::And(hn::Not(thin), hn::Ge(support_sq, hn::Zero(d))));
+    counts.thin += hn::CountTrue(d, thin);
+    counts.others += hn::CountTrue(d, hn::AndNot(thin, there));
   }
-  return others;
+  return counts;
 }
 
 /// Thin kernels by their boxes' columns and rows.
@@ -144,13 +170,12 @@ struct PixelSpan {
   LaneMask any;
 };
 
-/// Those within `reach` of the centre; `t`: see at_depth(). `places`, `spacings`: of pixel 0 and of
-/// pixels, on each of the planes.
-HWY_INLINE PixelSpan pixel_span(LaneTag d, const float* places, const float* spacings, Lanes center,
-                                Lanes reach, Lanes t) {
-  const Lanes per_spacing = hn::Div(hn::Set(d, 1.0f), at_depth(d, spacings, t));
-  const Lanes middle = hn::Mul(hn::Sub(center, at_depth(d, places, t)), per_spacing);
-  const Lanes half = hn::MulAdd(reach, hn::Abs(per_spacing), hn::Set(d, 1e-3f));
+/// Those within `reach` of centres at `center` across the pixels' lines and at depth z.
+HWY_INLINE PixelSpan pixel_span(LaneTag d, const PixelLines& lines, Lanes center, Lanes z,
+                                Lanes reach) {
+  const Lanes per_step = hn::Div(hn::Set(d, 1.0f), lines.step.at(d, z));
+  const Lanes middle = hn::Mul(hn::Sub(center, lines.first.at(d, z)), per_step);
+  const Lanes half = hn::MulAdd(reach, hn::Abs(per_step), hn::Set(d, 1e-3f));
   const Lanes end = hn::Set(d, static_cast<float>(AreaBuffer::size - 1));
   const Lanes first = hn::Max(hn::Zero(d), hn::Ceil(hn::Sub(middle, half)));
   const Lanes last = hn::Min(end, hn::Floor(hn::Add(middle, half)));
@@ -158,8 +183,8 @@ HWY_INLINE PixelSpan pixel_span(LaneTag d, const float* places, const float* spa
 }
 
 /// Finds the pixels that thin kernels reach in each vector of the planes.
-HWY_NOINLINE void find_pixels(const AreaPlanes& planes, const GatheredKernels& gathered,
-                              ThinKernels& out) {
+HWY_NOINLINE void find_pixels(const AreaPixels& pixels, const AreaPlanes& planes,
+                              const GatheredKernels& gathered, ThinKernels& out) {
   const LaneTag d;
   const hn::RebindToSigned<LaneTag> di;
   const hn::RebindToUnsigned<LaneTag> du;
@@ -180,11 +205,10 @@ HWY_NOINLINE void find_pixels(const AreaPlanes& planes, const GatheredKernels& g
       if (hn::AllFalse(d, reaches)) continue;
       parts.radius = hn::Sqrt(hn::Max(support_sq, hn::Zero(d)));
       parts.disc = hn::Sqrt(hn::Max(disc_sq, hn::Zero(d)));
-      const Lanes t = part_of_depth(d, planes, z);
-      const PixelSpan columns = pixel_span(d, planes.x, planes.dx, hn::Load(d, &gathered.x[i]),
-                                           parts.reach(d, planes.slope_x), t);
-      const PixelSpan rows = pixel_span(d, planes.y, planes.dy, hn::Load(d, &gathered.y[i]),
-                                        parts.reach(d, planes.slope_y), t);
+      const PixelSpan columns = pixel_span(d, pixels.columns, hn::Load(d, &gathered.x[i]), z,
+                                           parts.reach(d, pixels.columns.steepest));
+      const PixelSpan rows = pixel_span(d, pixels.rows, hn::Load(d, &gathered.y[i]), z,
+                                        parts.reach(d, pixels.rows.steepest));
       const auto column = whole(columns.first), last_column = whole(columns.last);
       const auto row = whole(rows.first), last_row = whole(rows.last);
       const LaneMask in_area = hn::And(reaches, hn::And(columns.any, rows.any));

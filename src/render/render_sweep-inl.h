@@ -37,8 +37,8 @@ struct SweepMemory {
   PlaneKernels plane_kernels;
   ColumnBuffer columns;
   AreaBuffer buffer;
-  AlignedVector<float> group;          ///< laid out like one of `buffer`
-  std::vector<std::uint64_t> visible;  ///< of a group: [block][field], a bit a plane
+  AlignedVector<float> groups;         ///< taken from the columns: laid out like those of `buffer`
+  std::vector<std::uint64_t> visible;  ///< [group][block][field], a bit a plane
   static constexpr int num_blocks = AreaBuffer::groups * AreaBuffer::groups * group_blocks;
   std::vector<RayState> blocks = std::vector<RayState>(num_blocks);  ///< as in AreaBuffer
   /// Of each block's rays, as in RayState.
@@ -52,6 +52,10 @@ constexpr std::size_t first_block(int row, int column) {
 
 /// Kernels on planes that are added in one go: planes are taken together until there are so many.
 inline constexpr std::size_t kernels_at_once = 1024;
+
+/// Groups of a row that are taken from the columns before the first is integrated: they fit into
+/// the first-level cache.
+inline constexpr int taken_groups = 4;
 
 /// Planes of a slab, whose kernels are found together: whole batches, which are sampled and
 /// integrated one after the other.
@@ -68,13 +72,14 @@ class AreaSweep {
         constants_(make_constants(*context.kernels)),
         area_(area),
         bounds_(make_ray_bounds(context, area.x, area.y, AreaBuffer::size, AreaBuffer::size)),
+        image_bounds_(make_ray_bounds(context, area.x, area.y, area.width, area.height)),
         layout_(make_layout(context)),
         field_floats_(static_cast<std::size_t>(layout_.channels() * layout_.lanes)),
         integrator_(context.classifiers, context.shading, layout_),
         memory_(memory),
         counts_(counts),
         clock_(counts.stages) {
-    memory.visible.resize(group_blocks * context.classifiers.size());
+    memory.visible.resize(taken_groups * group_blocks * context.classifiers.size());
   }
 
   void run(Framebuffer& image) {
@@ -122,16 +127,19 @@ class AreaSweep {
     clock_.lap(Stage::setup);
   }
 
-  /// Finds the groups that have rays under way on some of the planes; true if any has.
+  /// Finds the groups that have rays under way on some of the planes, and where the last of all
+  /// rays ends; true if there are such groups.
   bool find_live(const Slab& slab) {
     std::array<GroupBits, AreaBuffer::groups> rows{};
     GroupBits any = 0;
+    end_ = -1;
     for (int row = 0; row < AreaBuffer::groups; ++row) {
       GroupBits bits = 0;
       for (int column = 0; column < AreaBuffer::groups; ++column) {
         bool live = false;
         for (std::size_t b = first_block(row, column); b < first_block(row, column + 1); ++b) {
           live |= memory_.begin[b] < slab.first + slab.count && memory_.end[b] >= slab.first;
+          end_ = std::max(end_, memory_.end[b]);
         }
         bits |= static_cast<GroupBits>(live) << column;
       }
@@ -149,44 +157,53 @@ class AreaSweep {
                    make_frustum(bounds_, frame, context_.view), memory_.gathered);
     clock_.lap(Stage::traverse);
     if (memory_.gathered.size == 0 && !integrator_.zero_shows()) return;
-    num_others_ = find_thin_kernels(place_planes(bounds_, frame, 0), slab.count, memory_.gathered);
+    const AreaPixels pixels = place_pixels(bounds_, image_bounds_, frame);
+    shapes_ = find_thin_kernels(pixels, frame, memory_.gathered);
     clock_.lap(Stage::cull);
     memory_.buffer.reserve(layout_);
     memory_.columns.reserve(layout_);
-    memory_.group.resize(memory_.buffer.group_floats());
+    memory_.groups.resize(taken_groups * memory_.buffer.group_floats());
     for (int begin = 0; begin < slab.count; begin += AreaBuffer::planes) {
       const Slab batch{slab.first + begin, std::min(AreaBuffer::planes, slab.count - begin)};
-      if (begin > 0 && !find_live(batch)) return;
-      render_batch(frame, begin, batch);
+      if (begin > 0 && !find_live(batch)) continue;
+      render_batch(frame, pixels, begin, batch);
     }
   }
 
   /// Samples and integrates the planes of a batch, the first of which is plane `first` of the slab.
-  void render_batch(const SlabFrame& frame, int first, const Slab& batch) {
+  void render_batch(const SlabFrame& frame, const AreaPixels& pixels, int first,
+                    const Slab& batch) {
     if (context_.count_inside) {
-      render_channels<Channels<false, false, true>>(frame, first, batch);
+      render_channels<Channels<false, false, true>>(frame, pixels, first, batch);
     } else if (!context_.gradients) {
-      render_channels<Channels<false, false>>(frame, first, batch);
+      render_channels<Channels<false, false>>(frame, pixels, first, batch);
     } else if (context_.absolute) {
-      render_channels<Channels<true, true>>(frame, first, batch);
+      render_channels<Channels<true, true>>(frame, pixels, first, batch);
     } else {
-      render_channels<Channels<true, false>>(frame, first, batch);
+      render_channels<Channels<true, false>>(frame, pixels, first, batch);
     }
   }
 
   template <class C>
-  void render_channels(const SlabFrame& frame, int first, const Slab& batch) {
+  void render_channels(const SlabFrame& frame, const AreaPixels& pixels, int first,
+                       const Slab& batch) {
     EvaluationCounts evaluations;
-    if (num_others_ != 0) sum_by_planes<C>(frame, first, batch.count, evaluations);
-    const AreaPlanes planes = place_planes(bounds_, frame, first);
-    find_pixels(planes, memory_.gathered, memory_.thin);
-    clock_.lap(Stage::cull);
-    const auto column_floats = static_cast<std::size_t>(layout_.channels() * ColumnBuffer::planes);
-    sum_columns<C>(memory_.gathered, memory_.thin, {planes, live_, column_floats, memory_.columns},
-                   evaluations);
-    clock_.lap(Stage::sums);
-    for (int row = 0; row < AreaBuffer::groups; ++row) integrate_row(row, batch);
-    clock_.lap(Stage::integrate);
+    if (shapes_.others != 0) sum_by_planes<C>(frame, first, batch.count, evaluations);
+    if (shapes_.thin != 0) {
+      const AreaPlanes planes = place_planes(bounds_, frame, first);
+      find_pixels(pixels, planes, memory_.gathered, memory_.thin);
+      clock_.lap(Stage::cull);
+      const auto field_floats = static_cast<std::size_t>(layout_.channels() * ColumnBuffer::planes);
+      sum_columns<C>(memory_.gathered, memory_.thin, {planes, live_, field_floats, memory_.columns},
+                     evaluations);
+      clock_.lap(Stage::sums);
+    }
+    for (int row = 0; row < AreaBuffer::groups; ++row) {
+      for (int column = 0; column < AreaBuffer::groups; column += taken_groups) {
+        integrate_groups(row, column, batch);
+      }
+      memory_.columns.touched(row) = 0;
+    }
     counts_.kernel_evaluations += evaluations.carried_out;
     counts_.evaluations_inside += evaluations.inside_support;
   }
@@ -210,29 +227,50 @@ class AreaSweep {
     }
   }
 
-  /// Pass 2 for a row of groups, whose samples are zero afterwards.
-  void integrate_row(int row, const Slab& batch) {
-    const GroupBits thin = memory_.columns.touched(row);
-    for (int column = 0; column < AreaBuffer::groups; ++column) {
-      const bool live = (live_.row(row) >> column & 1) != 0;
-      if ((thin >> column & 1) != 0) {
-        integrate_columns(row, column, live, batch);
-      } else if (live && find_visible(row, column, batch.count)) {
+  /// Pass 2 for some groups of a row, whose samples are zero afterwards.
+  void integrate_groups(int row, int first, const Slab& batch) {
+    const GroupBits some = ((1u << taken_groups) - 1) << first;
+    const GroupBits live = live_.row(row) & some;
+    const GroupBits thin = memory_.columns.touched(row) & some;
+    GroupBits visible = 0;
+    for (GroupBits left = thin; left != 0; left &= left - 1) {
+      const int column = std::countr_zero(left);
+      visible |= static_cast<GroupBits>(take_group(row, column, live, batch)) << column;
+    }
+    if (thin != 0) clock_.lap(Stage::sums);
+    for (int column = first; column < first + taken_groups; ++column) {
+      if ((visible >> column & 1) != 0) {
+        integrate_group(row, column, taken(row, column).out, batch);
+      } else if (((live & ~thin) >> column & 1) != 0 && find_visible(row, column, batch.count)) {
         integrate_group(row, column, memory_.buffer.at(row, column), batch);
       }
       clear(row, column);
     }
-    memory_.columns.touched(row) = 0;
+    clock_.lap(Stage::integrate);
   }
 
-  /// Pass 2 for a group that thin kernels reach. Gradients are taken only where they are asked for.
-  void integrate_columns(int row, int column, bool live, const Slab& batch) {
-    const GroupSamples group{memory_.columns, memory_.buffer, row, column, memory_.group.data()};
+  /// A group that is taken from the columns.
+  GroupSamples taken(int row, int column) {
+    const auto place = static_cast<std::size_t>(column % taken_groups);
+    return {memory_.columns, memory_.buffer, row, column,
+            memory_.groups.data() + place * memory_.buffer.group_floats()};
+  }
+
+  /// Planes on which fields may be seen, of a group: [block][field].
+  std::uint64_t* visible_planes(int column) {
+    return memory_.visible.data() + static_cast<std::size_t>(column % taken_groups * group_blocks) *
+                                        context_.classifiers.size();
+  }
+
+  /// Takes a group that thin kernels reach, gradients only where something may be seen by rays
+  /// under way; true if so.
+  bool take_group(int row, int column, GroupBits live, const Slab& batch) {
+    const GroupSamples group = taken(row, column);
     const AreaBuffer::PlaneBits* const summed = memory_.buffer.touched(row, column);
     const std::uint64_t planes = ~(~std::uint64_t{0} << batch.count);
     const int channels = layout_.channels();
     std::uint64_t any = 0;
-    auto visible = memory_.visible.begin();
+    std::uint64_t* visible = visible_planes(column);
     for (int block = 0; block < group_blocks; ++block) {
       for (int f = 0; f < layout_.num_fields; ++f, ++visible) {
         const Visibility& visibility = context_.classifiers[static_cast<std::size_t>(f)].visibility;
@@ -240,7 +278,7 @@ class AreaSweep {
         any |= *visible;
       }
     }
-    const bool seen = live && any != 0;
+    const bool seen = (live >> column & 1) != 0 && any != 0;
     for (int f = 0; f < layout_.num_fields && channels > 1; ++f) {
       const int first = f * channels + 1, last = (f + 1) * channels;
       if (seen) {
@@ -249,15 +287,16 @@ class AreaSweep {
         drop_channels(group, first, last);
       }
     }
-    if (seen) integrate_group(row, column, group.out, batch);
+    return seen;
   }
 
-  /// Sets memory_.visible for a group of the buffer; true if anything may be seen.
+  /// Finds the visible planes of a group of the buffer; true if there are any.
   bool find_visible(int row, int column, int num_planes) {
     const LaneTag d;
     const std::size_t num_fields = context_.classifiers.size();
     const std::size_t stride = memory_.buffer.plane_floats();
     const AreaBuffer::PlaneBits* const touched = memory_.buffer.touched(row, column);
+    std::uint64_t* const visible_of_group = visible_planes(column);
     std::uint64_t any = 0;
     for (std::size_t f = 0; f < num_fields; ++f) {
       const Visibility visibility = context_.classifiers[f].visibility;
@@ -271,7 +310,7 @@ class AreaSweep {
             visible |= std::uint64_t{may_be_seen(d, values, visibility)} << k;
           }
         }
-        memory_.visible[v * num_fields + f] = visible & planes;
+        visible_of_group[v * num_fields + f] = visible & planes;
         any |= visible & planes;
       }
     }
@@ -280,7 +319,7 @@ class AreaSweep {
 
   void integrate_group(int row, int column, const float* samples, const Slab& batch) {
     const std::size_t num_fields = context_.classifiers.size();
-    const std::uint64_t* visible = memory_.visible.data();
+    const std::uint64_t* visible = visible_planes(column);
     std::size_t b = first_block(row, column);
     for (int v = 0; v < group_blocks; ++v, ++b, visible += num_fields) {
       if (std::any_of(visible, visible + num_fields,
@@ -317,7 +356,7 @@ class AreaSweep {
   const FrameContext& context_;
   const SamplingConstants constants_;
   const Tile area_;
-  const RayBounds bounds_;
+  const RayBounds bounds_, image_bounds_;  ///< of all pixels, and of those within the image
   const SampleLayout layout_;
   const std::size_t field_floats_;  ///< of a block
   const Integrator integrator_;
@@ -325,8 +364,8 @@ class AreaSweep {
   TileCounts& counts_;
   StageClock clock_;
   LiveGroups live_;                   ///< groups with rays under way
-  std::size_t num_others_ = 0;        ///< kernels of the slab that are not thin
-  SampleIndex begin_ = 0, end_ = -1;  ///< of all rays at first
+  ShapeCounts shapes_;                ///< of the slab's kernels
+  SampleIndex begin_ = 0, end_ = -1;  ///< of all rays
 };
 
 TileCounts render_sweep(const FrameContext& context, const Tile& area, Framebuffer& image) {

@@ -314,6 +314,21 @@ TEST_F(Bench, Fig7EndsRaysEarlyAndLate) {
   EXPECT_THAT(workspace_.read("out/bench/fig7_passes.svg"), Not(HasSubstr("nan")));
 }
 
+TEST_F(Bench, ThreadsComparesSeveralWithOne) {
+  const Outcome outcome = measure("threads zeolite --threads 3");
+  EXPECT_THAT(outcome.out, HasSubstr("3 threads over one: "));
+  const auto rows = result("threads")["rows"];
+  ASSERT_EQ(rows.size(), 2U * 3);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    EXPECT_EQ(rows[i]["threads"], i % 3 + 1);
+    EXPECT_EQ(rows[i]["frame"]["samples"], rows[i / 3 * 3]["frame"]["samples"]);
+    EXPECT_NEAR(rows[i]["over_one_thread"].get<double>(),
+                rows[i / 3 * 3]["frame"]["frame_ms"].get<double>() /
+                    rows[i]["frame"]["frame_ms"].get<double>(),
+                1e-9);
+  }
+}
+
 TEST_F(Bench, Fig8AndFig9MakePictures) {
   measure("fig8 zeolite");
   measure("fig9 zeolite");
@@ -330,7 +345,8 @@ TEST_F(Bench, Fig8AndFig9MakePictures) {
 }
 
 TEST_F(Bench, ASceneTooLargeForTheMemoryIsRefusedFirst) {
-  for (const std::string what : {"scenes", "table1", "table2", "fields", "build"}) {
+  for (const std::string what :
+       {"scenes", "table1", "table2", "fields", "build", "limit", "threads"}) {
     EXPECT_THAT(failure("bench " + what + " tryptophan cosmology --memory 2" + data, 1),
                 StartsWith("motes: error: cosmology: 82051072 particles need "));
   }

@@ -177,6 +177,22 @@ TEST(Engines, SmallKernelsSeenThroughASlit) {
   check(s, "slit, two fields, lit");
 }
 
+TEST(Engines, RaysThatBeginAfterOthersHaveEnded) {
+  // A face of the volume, opaque from the first sample on, seen obliquely: a ray begins twelve
+  // planes after its neighbour, so that between one and the next there are eight that none needs.
+  PlainScene s = plain_scene({{0, -1, 0}, {8, 1, 0}, {0, 1, 8}}, 0.5);
+  s.scene.transfer_functions = {{{{.value = 0, .color = {1, 0, 0}, .extinction = 1000},
+                                  {.value = 1, .color = {0, 0, 1}, .extinction = 1000}},
+                                 false}};
+  s.scene.camera.eye = {-22, 0, -18};
+  s.scene.camera.target = {-2, 0, 2};
+  s.scene.camera.orthographic_height = 4 * 0.6;
+  s.scene.render.width = 8;
+  s.scene.render.height = 4;
+  s.scene.step_size = 0.05;
+  check(s, "oblique face");
+}
+
 TEST(Engines, RefuseACameraThatLooksNowhere) {
   PlainScene s = plain_scene({{0, 0, 0}}, 10);
   s.scene.camera.target = s.scene.camera.eye;

@@ -16,8 +16,6 @@ std::vector<Way> all_ways() {
   for (const std::string& set : instruction_sets()) {
     for (const std::optional<int> samples_per_pass : {std::optional<int>{}, {0}, {7}}) {
       ways.push_back({set, Engine::coherent, samples_per_pass});
-    }
-    for (const std::optional<int> samples_per_pass : {std::optional<int>{}, {7}}) {
       ways.push_back({set, Engine::sweep, samples_per_pass});
     }
     ways.push_back({set, Engine::direct, {}});

@@ -31,6 +31,7 @@ void run_fields(const BenchJob& job);
 void run_limit(const BenchJob& job);
 void run_lattice(const BenchJob& job);  ///< makes its own particles, as radii does
 void run_radii(const BenchJob& job);
+void run_threads(const BenchJob& job);
 void run_fig6(const BenchJob& job);
 void run_fig7(const BenchJob& job);
 void run_fig8(const BenchJob& job);

@@ -32,6 +32,7 @@ constexpr const char* examples =
   limit     what part of the machine's peak the sweep reaches, and where the rest goes
   lattice   frame times of lattices from 91 thousand to 82 million particles, unlit
   radii     time of a kernel evaluation where radii differ by orders of magnitude
+  threads   frame times of several threads beside those of one
   fig6      frames per second from a thousand to all particles of the cosmological box
   fig7      frames per second with rays that end early or late, and with passes of many samples
   fig8      pictures for several kernel scales (kappa), and their frames per second
@@ -62,6 +63,7 @@ constexpr Benchmark benchmarks[] = {{"scenes", run_scenes},
                                     {"limit", run_limit},
                                     {"lattice", run_lattice, {}, 0},
                                     {"radii", run_radii, {}, 0},
+                                    {"threads", run_threads, {"nanosphere_90k"}},
                                     {"fig6", run_fig6, {"cosmology"}, 1},
                                     {"fig7", run_fig7, {"cosmology"}, 1},
                                     {"fig8", run_fig8, {"nanobowl"}},

@@ -90,7 +90,8 @@ std::vector<FrameTimes> measure_frames(const std::vector<Variant>& variants,
       const Variant& variant = variants[v];
       const bool warm_up = round < 0;
       if (!warm_up && results[v].frames == 1) continue;  // it ran out of patience
-      RenderOptions render{options.threads, variant.samples_per_pass, &console};
+      const int threads = variant.threads > 0 ? variant.threads : options.threads;
+      RenderOptions render{threads, variant.samples_per_pass, &console};
       RenderStatistics statistics;
       variant.renderer->render(variant.scene, render, image, &statistics);
       const bool too_long = statistics.frame_ms > variant.patience_ms;

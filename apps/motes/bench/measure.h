@@ -33,6 +33,7 @@ struct Variant {
   std::optional<int> samples_per_pass = std::nullopt;  ///< see RenderOptions
   /// A warm-up frame that takes longer is the only one, and counts.
   double patience_ms = std::numeric_limits<double>::infinity();
+  int threads = 0;            ///< 0: those of the options
   bool count_inside = false;  ///< fills FrameTimes::evaluations_inside, by a frame of its own
 };
 
