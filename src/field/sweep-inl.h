@@ -172,6 +172,39 @@ HWY_INLINE RowFactors<C> spread_group(LaneTag d, const BoxFactors<kColumns, kRow
   return out;
 }
 
+/// How a kernel's gradient follows from its value: what each component is multiplied by.
+template <class V>
+struct GradientSlopes {
+  V x, y, z;
+};
+
+/// Adds a kernel's values, before they are cut off below `cut`, to samples of a field: channel 0 at
+/// `samples`, each further one `channel_floats` behind. Returns how many samples lie inside of the
+/// support, if C::count.
+template <class C, class D, class V = hn::Vec<D>>
+HWY_INLINE std::uint64_t add_to_samples(D d, V values, V cut, const GradientSlopes<V>& slopes,
+                                        float* samples, int channel_floats) {
+  // The kernel ends where its value falls below that at the support radius: no distance is needed.
+  const V magnitude = hn::Abs(values);
+  const auto inside = hn::Ge(magnitude, cut);
+  hn::Store(add_inside(d, inside, values, hn::Load(d, samples)), d, samples);
+  if constexpr (C::gradients) {
+    const V phi = hn::IfThenElseZero(inside, values);
+    const auto add = [&](int channel, V slope) MOTES_INLINE HWY_ATTR {
+      float* const gradient = samples + channel * channel_floats;
+      hn::Store(hn::MulAdd(phi, slope, hn::Load(d, gradient)), d, gradient);
+    };
+    add(1, slopes.x);
+    add(2, slopes.y);
+    add(3, slopes.z);
+  }
+  if constexpr (C::absolute) {
+    float* const absolute = samples + 4 * channel_floats;
+    hn::Store(add_inside(d, inside, magnitude, hn::Load(d, absolute)), d, absolute);
+  }
+  return C::count ? hn::CountTrue(d, inside) : 0;
+}
+
 /// Adds a kernel to the samples of a group: `column` is that of the group in the kernel's box,
 /// `samples` the field's channel 0 in the group's first block. Returns how many samples lie inside
 /// of the support, if C::count.
@@ -181,31 +214,15 @@ HWY_INLINE std::uint64_t add_to_group(LaneTag d, const BoxFactors<kColumns, kRow
                                       std::size_t block_floats) {
   std::uint64_t inside_support = 0;
   const Lanes columns = hn::LoadDup128(d, factors.column + AreaBuffer::group_size * column);
-  Lanes slope_x = columns;
+  GradientSlopes<Lanes> slopes{columns, columns, columns};
   if constexpr (C::gradients) {
-    slope_x = hn::LoadDup128(d, factors.column_slope + AreaBuffer::group_size * column);
+    slopes.x = hn::LoadDup128(d, factors.column_slope + AreaBuffer::group_size * column);
+    slopes.z = rows.slope_z;
   }
   for (int v = 0; v < group_blocks; ++v, samples += block_floats) {
-    // The kernel ends where its value falls below that at the support radius: no distance is
-    // needed.
-    const Lanes p = hn::Mul(columns, rows.row[v]), magnitude = hn::Abs(p);
-    const LaneMask inside = hn::Ge(magnitude, rows.cut);
-    hn::Store(add_inside(d, inside, p, hn::Load(d, samples)), d, samples);
-    if constexpr (C::gradients) {
-      const Lanes phi = hn::IfThenElseZero(inside, p);
-      const auto add = [&](int channel, Lanes slope) HWY_ATTR {
-        float* const gradient = samples + channel * num_lanes;
-        hn::Store(hn::MulAdd(phi, slope, hn::Load(d, gradient)), d, gradient);
-      };
-      add(1, slope_x);
-      add(2, rows.slope[v]);
-      add(3, rows.slope_z);
-    }
-    if constexpr (C::absolute) {
-      float* const absolute = samples + 4 * num_lanes;
-      hn::Store(add_inside(d, inside, magnitude, hn::Load(d, absolute)), d, absolute);
-    }
-    if constexpr (C::count) inside_support += hn::CountTrue(d, inside);
+    if constexpr (C::gradients) slopes.y = rows.slope[v];
+    inside_support +=
+        add_to_samples<C>(d, hn::Mul(columns, rows.row[v]), rows.cut, slopes, samples, num_lanes);
   }
   return inside_support;
 }

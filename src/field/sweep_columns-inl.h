@@ -259,38 +259,6 @@ struct DepthFactors {
   }
 };
 
-/// What the pixels of a row have in common. Kept in registers, which the compiler could not know of
-/// factors: they might be among the samples.
-struct DepthRow {
-  DepthLanes row, slope, slope_z, cut;
-};
-
-/// Adds a kernel to a vector of planes of a pixel, in column `i` of its box; `samples` is the
-/// field's channel 0 there. Returns how many samples lie inside of the support, if C::count.
-template <int kColumns, class C>
-HWY_INLINE std::uint64_t add_to_pixel(DepthTag d, const DepthFactors<kColumns, C>& factors,
-                                      const DepthRow& row, std::size_t i, float* samples) {
-  const DepthLanes p = hn::Mul(row.row, hn::Load(d, factors.column[i]));
-  const DepthLanes magnitude = hn::Abs(p);
-  const auto inside = hn::Ge(magnitude, row.cut);
-  hn::Store(add_inside(d, inside, p, hn::Load(d, samples)), d, samples);
-  if constexpr (C::gradients) {
-    const DepthLanes phi = hn::IfThenElseZero(inside, p);
-    const auto add = [&](int channel, DepthLanes slope) MOTES_INLINE HWY_ATTR {
-      float* const gradient = samples + channel * ColumnBuffer::planes;
-      hn::Store(hn::MulAdd(phi, slope, hn::Load(d, gradient)), d, gradient);
-    };
-    add(1, hn::Load(d, factors.column_slope[i]));
-    add(2, row.slope);
-    add(3, row.slope_z);
-  }
-  if constexpr (C::absolute) {
-    float* const absolute = samples + 4 * ColumnBuffer::planes;
-    hn::Store(add_inside(d, inside, magnitude, hn::Load(d, absolute)), d, absolute);
-  }
-  return C::count ? hn::CountTrue(d, inside) : 0;
-}
-
 /// Marks the groups of a thin kernel's box; false if no ray is under way in them.
 HWY_INLINE bool touch_groups(const BoxedKernel& kernel, const LiveGroups& live,
                              ColumnBuffer& buffer) {
@@ -360,16 +328,22 @@ HWY_NOINLINE void add_thin_kernels(const GatheredKernels& gathered,
     batch.fill(d, gathered, samples, list);
     for (std::size_t n = 0; n < batch.count; ++n) {
       const auto& kernel = batch.members[n];
-      DepthRow row;
-      row.slope_z = hn::Load(d, kernel.factors.slope_z);
-      row.cut = hn::Set(d, kernel.cut);
+      const DepthFactors<kColumns, C>& factors = kernel.factors;
+      // What pixels have in common is kept in registers, which the compiler could not do by itself:
+      // factors might be among the samples.
+      const DepthLanes cut = hn::Set(d, kernel.cut);
+      GradientSlopes<DepthLanes> slopes{cut, cut, cut};
+      if constexpr (C::gradients) slopes.z = hn::Load(d, factors.slope_z);
       float* first = kernel.samples;
       for (int j = 0; j < kernel.rows; ++j, first += row_floats) {
-        row.row = hn::Load(d, kernel.factors.row[j]);
-        if constexpr (C::gradients) row.slope = hn::Load(d, kernel.factors.row_slope[j]);
+        const DepthLanes row = hn::Load(d, factors.row[j]);
+        if constexpr (C::gradients) slopes.y = hn::Load(d, factors.row_slope[j]);
         float* pixel = first;
         unroll<kColumns>([&](std::size_t i) MOTES_INLINE HWY_ATTR {
-          counts.inside_support += add_to_pixel(d, kernel.factors, row, i, pixel);
+          if constexpr (C::gradients) slopes.x = hn::Load(d, factors.column_slope[i]);
+          counts.inside_support +=
+              add_to_samples<C>(d, hn::Mul(row, hn::Load(d, factors.column[i])), cut, slopes, pixel,
+                                ColumnBuffer::planes);
           pixel += pixel_floats;
         });
       }
