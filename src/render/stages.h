@@ -38,7 +38,7 @@ struct StageTicks {
 };
 
 /// Books the time since it was last asked on a stage. One lap takes about 30 cycles, so laps are
-/// taken once a tile and slab.
+/// taken of no less than some groups.
 class StageClock {
  public:
   explicit StageClock(StageTicks& out) : out_(out), last_(__rdtsc()) {}

@@ -356,13 +356,14 @@ TEST_F(Bench, ASceneTooLargeForTheMemoryIsRefusedFirst) {
 TEST_F(Bench, WrongCommandLines) {
   EXPECT_THAT(failure("bench", 2), HasSubstr("WHAT"));
   EXPECT_THAT(failure("bench table3", 2), HasSubstr("did you mean 'table"));
+  EXPECT_THAT(failure("bench table2 --memory -1", 2),
+              HasSubstr("--memory: expected a number greater than 0, found '-1'"));
   EXPECT_THAT(failure("bench scenes zeolit", 2), HasSubstr("did you mean 'zeolite'"));
   EXPECT_THAT(failure("bench table1 --scenes zeolite,fog", 2), HasSubstr("unknown scene 'fog'"));
   EXPECT_THAT(failure(std::string("bench fig6 zeolite tryptophan") + data, 1),
               HasSubstr("fig6 takes one scene; 2 are named"));
   EXPECT_THAT(failure("bench table1 --repeat 0", 2), HasSubstr("--repeat"));
   EXPECT_THAT(failure("bench table1 --size 5", 2), HasSubstr("--size"));
-  EXPECT_THAT(failure("bench table1 --memory -1", 2), HasSubstr("--memory"));
   EXPECT_THAT(failure("bench table1", 1),
               StartsWith("motes: error: data/bench: there is no such directory"));
 }

@@ -163,9 +163,17 @@ void add_bench_command(CLI::App& program) {
             "frames, or builds, of which the median is\ntaken (default: 5)");
   add_count(*command, "--threads", options->bench.threads, 4096,
             "threads to use (default: all cores)");
+  const CLI::Validator positive(
+      [](const std::string& given) {
+        double gib = 0;
+        return CLI::detail::lexical_cast(given, gib) && gib > 0
+                   ? std::string()
+                   : fmt::format("expected a number greater than 0, found '{}'", given);
+      },
+      "");
   command->add_option("--memory", options->memory_gib, "most memory to use (default: what is free)")
       ->type_name("GIB")
-      ->check(CLI::PositiveNumber);
+      ->check(positive);
   command->add_option("--data", options->data, "Motes' data/bench (default: data/bench)")
       ->type_name("DIR");
   command->add_option("--output", options->output, "where results go (default: out/bench)")

@@ -290,7 +290,7 @@ nlohmann::ordered_json to_json(const Row& row, const BenchJob& job) {
 /// Times, and peaks of memory where the system tells them.
 void write_charts(const BenchJob& job, const std::vector<Row>& rows) {
   BarChart times{"Build of the tree", "seconds", {}, {}};
-  BarChart peaks{"Memory that the build takes at its peak", "bytes a particle", {}, {}};
+  BarChart peaks{"Memory that the build takes at its peak", "bytes a particle", {}, {}, false};
   for (const Row& row : rows) {
     times.categories.emplace_back(row.scene->name);
     peaks.categories.emplace_back(row.scene->name);

@@ -200,7 +200,8 @@ void run_fields(const BenchJob& job) {
   BarChart chart{"Frames with several fields",
                  "% of the time with one field",
                  {},
-                 {{"shared out among fields", {}}, {"all in each of two fields", {}}}};
+                 {{"all fields of the scene", {}}, {"all particles in two fields", {}}},
+                 false};
   std::vector<double> each, second;
   for (const BenchScene* entry : job.scenes) {
     Console console;

@@ -139,7 +139,7 @@ void measure(const BenchJob& job, const Lattice& lattice, Result& result, Consol
                              {"coherent", to_json(times[1])},
                              {"sweep_over_coherent", ratio}});
       result.chart.categories.push_back(
-          fmt::format("{}, {}, {}", lattice.particles(), extinction, view));
+          fmt::format("{}, T {}, {}", lattice.particles(), extinction, view));
       result.chart.series[0].values.emplace_back(times[0].median_ms);
       result.chart.series[1].values.emplace_back(times[1].median_ms);
       result.ratios.push_back(ratio);

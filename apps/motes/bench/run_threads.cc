@@ -32,8 +32,10 @@ void run_threads(const BenchJob& job) {
   fmt::print("{}\n\n{:<16}{:<6}{:>9}{:>10}{:>13}\n", describe_measurement(job.options), "scene",
              "view", "threads", "ms", "over one");
   nlohmann::ordered_json rows = nlohmann::json::array();
-  LineChart chart{
-      "Frame rates of several threads", "threads", "times one thread", false, false, {}};
+  BarChart chart{"Frame rates of several threads", "times one thread", {}, {}, false};
+  for (const int count : counts) {
+    chart.series.push_back({fmt::format("{} thread{}", count, count > 1 ? "s" : ""), {}});
+  }
   std::vector<double> speedups;
   for (const BenchScene* entry : job.scenes) {
     Console console;
@@ -45,7 +47,7 @@ void run_threads(const BenchJob& job) {
       std::vector<Variant> variants(counts.size(), variant);
       for (std::size_t i = 0; i < counts.size(); ++i) variants[i].threads = counts[i];
       const std::vector<FrameTimes> times = measure_frames(variants, job.options, console);
-      chart.series.push_back({fmt::format("{}, {}", entry->name, view), {}});
+      chart.categories.push_back(fmt::format("{} {}", entry->name, view));
       for (std::size_t i = 0; i < counts.size(); ++i) {
         const double speedup = times[0].median_ms / times[i].median_ms;
         fmt::print("{:<16}{:<6}{:>9}{:>10.1f}{:>13.2f}\n", entry->name, view, counts[i],
@@ -55,7 +57,7 @@ void run_threads(const BenchJob& job) {
                         {"threads", counts[i]},
                         {"frame", to_json(times[i])},
                         {"over_one_thread", speedup}});
-        chart.series.back().points.emplace_back(counts[i], speedup);
+        chart.series[i].values.emplace_back(speedup);
       }
       std::fflush(stdout);
       speedups.push_back(times[0].median_ms / times.back().median_ms);
