@@ -226,8 +226,8 @@ HWY_NOINLINE void find_pixels(const AreaPixels& pixels, const AreaPlanes& planes
 template <int kColumns, class C>
 struct DepthFactors {
   alignas(64) float column[kColumns][depth_lanes], row[max_thin_pixels][depth_lanes];
-  alignas(64) float column_slope[C::gradients ? kColumns : 1][depth_lanes];
-  alignas(64) float row_slope[C::gradients ? max_thin_pixels : 1][depth_lanes];
+  // Without gradients nothing is written here.
+  alignas(64) float column_slope[kColumns][depth_lanes], row_slope[max_thin_pixels][depth_lanes];
   alignas(64) float slope_z[depth_lanes];
 
   HWY_INLINE void fill(DepthTag d, const GatheredKernels& gathered, const AreaPlanes& planes,

@@ -193,7 +193,8 @@ class AreaSweep {
       const AreaPlanes planes = place_planes(bounds_, frame, first);
       find_pixels(pixels, planes, memory_.gathered, memory_.thin);
       clock_.lap(Stage::cull);
-      const auto field_floats = static_cast<std::size_t>(layout_.channels() * ColumnBuffer::planes);
+      const std::size_t field_floats =
+          static_cast<std::size_t>(layout_.channels()) * std::size_t{ColumnBuffer::planes};
       sum_columns<C>(memory_.gathered, memory_.thin, {planes, live_, field_floats, memory_.columns},
                      evaluations);
       clock_.lap(Stage::sums);
