@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "core/aligned.h"
+#include "field/area_pixels.h"
 #include "field/gather-inl.h"
 #include "samples/area_buffer.h"
 #include "samples/compress-inl.h"
@@ -27,32 +28,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace motes {
 namespace HWY_NAMESPACE {
-
-/// The samples of an area on one plane, in the slab's frame: that of column i and row j lies at
-/// (x + i dx, y + j dy, z).
-struct AreaPlane {
-  float x, dx, y, dy, z;
-};
-
-/// Plane `k` of the slab; `area` bounds the rays of the area's pixels.
-inline AreaPlane place_plane(const RayBounds& area, const SlabFrame& frame, int k) {
-  const double z = static_cast<double>(frame.first_depth) + k * static_cast<double>(frame.step);
-  const double depth = frame.reference_depth + z;
-  const auto low = [&](const Range& origin, const Range& direction) {
-    return origin.low + depth * direction.low;
-  };
-  const auto high = [&](const Range& origin, const Range& direction) {
-    return origin.high + depth * direction.high;
-  };
-  constexpr double steps = AreaBuffer::size - 1;
-  const double left = low(area.origin_x, area.direction_x);
-  const double right = high(area.origin_x, area.direction_x);
-  const double bottom = low(area.origin_y, area.direction_y);
-  const double top = high(area.origin_y, area.direction_y);
-  return {static_cast<float>(left - frame.reference_x), static_cast<float>((right - left) / steps),
-          static_cast<float>(top - frame.reference_y), static_cast<float>((bottom - top) / steps),
-          static_cast<float>(z)};
-}
 
 /// Groups or pixels of an area that a kernel may reach.
 struct KernelBox {

@@ -12,19 +12,18 @@
 
 #include <hwy/highway.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <numbers>
 #include <span>
 
+#include "field/area_pixels.h"
 #include "field/gather-inl.h"
 #include "field/sweep-inl.h"
 #include "field/sweep_boxes-inl.h"
 #include "samples/column_buffer.h"
 #include "samples/lanes-inl.h"
-#include "samples/transpose-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace motes {
@@ -48,10 +47,10 @@ struct AreaPlanes {
 
 /// Planes `first` to first + ColumnBuffer::planes - 1 of the slab; those beyond it are the next
 /// one's.
-inline AreaPlanes place_planes(const RayBounds& area, const SlabFrame& frame, int first) {
+inline AreaPlanes place_planes(const AreaPixels& pixels, const SlabFrame& frame, int first) {
   AreaPlanes planes;
   for (int k = 0; k < ColumnBuffer::planes; ++k) {
-    const AreaPlane plane = place_plane(area, frame, first + k);
+    const AreaPlane plane = place_plane(pixels, frame, first + k);
     planes.x[k] = plane.x;
     planes.dx[k] = plane.dx;
     planes.y[k] = plane.y;
@@ -61,45 +60,9 @@ inline AreaPlanes place_planes(const RayBounds& area, const SlabFrame& frame, in
   return planes;
 }
 
-/// What grows evenly with depth, which is relative to the frame.
-struct LinearInDepth {
-  float at_zero, per_depth;
-  HWY_INLINE Lanes at(LaneTag d, Lanes z) const {
-    return hn::MulAdd(z, hn::Set(d, per_depth), hn::Set(d, at_zero));
-  }
-};
-
-/// The area's columns of pixels, or its rows, at any depth of a slab: the place of the first and
-/// the distance to the next, which is negative for rows. `steepest`: the most that a ray of the
-/// image moves across them, per depth.
-struct PixelLines {
-  LinearInDepth first, step;
-  float steepest;
-};
-
-struct AreaPixels {
-  PixelLines columns, rows;
-};
-
-/// `in_image`: bounds of those of the area's rays that are the image's.
-inline AreaPixels place_pixels(const RayBounds& area, const RayBounds& in_image,
-                               const SlabFrame& frame) {
-  const auto linear = [&](double origin, double direction, double reference) {
-    return LinearInDepth{static_cast<float>(origin + frame.reference_depth * direction - reference),
-                         static_cast<float>(direction)};
-  };
-  constexpr double steps = AreaBuffer::size - 1;
-  const auto lines = [&](double origin, double direction, double last_origin, double last_direction,
-                         double reference, const Range& slopes) {
-    return PixelLines{
-        linear(origin, direction, reference),
-        linear((last_origin - origin) / steps, (last_direction - direction) / steps, 0),
-        static_cast<float>(std::max(std::abs(slopes.low), std::abs(slopes.high)))};
-  };
-  return {lines(area.origin_x.low, area.direction_x.low, area.origin_x.high, area.direction_x.high,
-                frame.reference_x, in_image.direction_x),
-          lines(area.origin_y.high, area.direction_y.high, area.origin_y.low, area.direction_y.low,
-                frame.reference_y, in_image.direction_y)};
+HWY_INLINE Lanes at_depth(LaneTag d, const LinearInDepth& line, Lanes z) {
+  return hn::MulAdd(z, hn::Set(d, static_cast<float>(line.per_depth)),
+                    hn::Set(d, static_cast<float>(line.at_zero)));
 }
 
 /// Parts of supports that lie `from` or more before their centres, or behind.
@@ -108,7 +71,8 @@ struct SupportParts {
   Lanes disc;  ///< radius of the widest disc of a part, `from` away from the centre
 
   /// How far from its centre rays of up to that slope may pass in it, across the view.
-  HWY_INLINE Lanes reach(LaneTag d, float slope) const {
+  HWY_INLINE Lanes reach(LaneTag d, double steepest) const {
+    const auto slope = static_cast<float>(steepest);
     const float length = std::sqrt(1 + slope * slope);
     const LaneMask widest = hn::Le(from, hn::Mul(radius, hn::Set(d, slope / length)));
     return hn::IfThenElse(widest, hn::Mul(radius, hn::Set(d, length)),
@@ -140,7 +104,8 @@ HWY_NOINLINE ShapeCounts find_thin_kernels(const AreaPixels& pixels, const SlabF
     whole.radius = hn::Sqrt(hn::Max(support_sq, hn::Zero(d)));
     whole.from = hn::Zero(d);
     whole.disc = whole.radius;
-    const Lanes dx = pixels.columns.step.at(d, z), dy = hn::Neg(pixels.rows.step.at(d, z));
+    const Lanes dx = at_depth(d, pixels.columns.step, z);
+    const Lanes dy = hn::Neg(at_depth(d, pixels.rows.step, z));
     const Lanes width = hn::Mul(two, whole.reach(d, pixels.columns.steepest));
     const Lanes height = hn::Mul(two, whole.reach(d, pixels.rows.steepest));
     const LaneMask fits =
@@ -173,8 +138,8 @@ struct PixelSpan {
 /// Those within `reach` of centres at `center` across the pixels' lines and at depth z.
 HWY_INLINE PixelSpan pixel_span(LaneTag d, const PixelLines& lines, Lanes center, Lanes z,
                                 Lanes reach) {
-  const Lanes per_step = hn::Div(hn::Set(d, 1.0f), lines.step.at(d, z));
-  const Lanes middle = hn::Mul(hn::Sub(center, lines.first.at(d, z)), per_step);
+  const Lanes per_step = hn::Div(hn::Set(d, 1.0f), at_depth(d, lines.step, z));
+  const Lanes middle = hn::Mul(hn::Sub(center, at_depth(d, lines.first, z)), per_step);
   const Lanes half = hn::MulAdd(reach, hn::Abs(per_step), hn::Set(d, 1e-3f));
   const Lanes end = hn::Set(d, static_cast<float>(AreaBuffer::size - 1));
   const Lanes first = hn::Max(hn::Zero(d), hn::Ceil(hn::Sub(middle, half)));
@@ -352,7 +317,7 @@ HWY_NOINLINE void add_thin_kernels(const GatheredKernels& gathered,
   }
 }
 
-/// Adds thin kernels.
+/// Adds thin kernels, all shapes of boxes in turn.
 template <class C>
 void sum_columns(const GatheredKernels& gathered, const ThinKernels& kernels,
                  const ColumnSamples& samples, EvaluationCounts& counts) {
@@ -361,136 +326,6 @@ void sum_columns(const GatheredKernels& gathered, const ThinKernels& kernels,
     add_thin_kernels<i + 1, C>(gathered, kernels.with_keys(first, first + max_thin_pixels), samples,
                                counts);
   });
-}
-
-/// The planes of a batch of one block of pixels: a vector each.
-struct BatchOfBlock {
-  Lanes plane[ColumnBuffer::planes];
-};
-
-/// Takes a channel of a block from `in`, its first pixel's, where zeros are left.
-HWY_INLINE BatchOfBlock take_channel(LaneTag d, float* in, std::size_t pixel_floats,
-                                     std::size_t row_floats) {
-  constexpr int size = AreaBuffer::group_size;
-  const auto take = [&](auto tag, std::size_t pixel, std::size_t plane) MOTES_INLINE HWY_ATTR {
-    float* const at = in + pixel / size * row_floats + pixel % size * pixel_floats + plane;
-    const auto values = hn::Load(tag, at);
-    hn::Store(hn::Zero(tag), tag, at);
-    return values;
-  };
-  BatchOfBlock out;
-#if HWY_TARGET <= HWY_AVX3
-  static_assert(num_lanes == 2 * ColumnBuffer::planes);
-  const hn::Half<LaneTag> dh;
-  // Two pixels a vector, one of an even row of the group and that below it.
-  Lanes v[8];
-  unroll<8>([&](std::size_t i) MOTES_INLINE HWY_ATTR {
-    const std::size_t pixel = i % 4 + i / 4 * 8;
-    const auto upper = take(dh, pixel, 0), lower = take(dh, pixel + 4, 0);
-    v[i] = hn::Combine(d, lower, upper);
-  });
-  transpose_fours(d, v[0], v[1], v[2], v[3]);
-  transpose_fours(d, v[4], v[5], v[6], v[7]);
-  // Vector j now has planes j and 4 + j of row 0, then of row 1; vector 4 + j of rows 2 and 3.
-  unroll<4>([&](std::size_t j) MOTES_INLINE HWY_ATTR {
-    constexpr int even = _MM_SHUFFLE(2, 0, 2, 0), odd = _MM_SHUFFLE(3, 1, 3, 1);
-    // All lanes under a mask: without, the compiler warns of the intrinsic's own.
-    constexpr __mmask16 all = 0xffff;
-    out.plane[j] = Lanes{_mm512_maskz_shuffle_f32x4(all, v[j].raw, v[4 + j].raw, even)};
-    out.plane[4 + j] = Lanes{_mm512_maskz_shuffle_f32x4(all, v[j].raw, v[4 + j].raw, odd)};
-  });
-#elif HWY_TARGET <= HWY_AVX2
-  static_assert(num_lanes == ColumnBuffer::planes);
-  Lanes v[num_lanes];
-  unroll<num_lanes>([&](std::size_t i) MOTES_INLINE HWY_ATTR { v[i] = take(d, i, 0); });
-  transpose_fours(d, v[0], v[1], v[2], v[3]);
-  transpose_fours(d, v[4], v[5], v[6], v[7]);
-  // Vector j now has planes j and 4 + j of row 0; vector 4 + j of row 1.
-  unroll<4>([&](std::size_t j) MOTES_INLINE HWY_ATTR {
-    out.plane[j] = hn::ConcatLowerLower(d, v[4 + j], v[j]);
-    out.plane[4 + j] = hn::ConcatUpperUpper(d, v[4 + j], v[j]);
-  });
-#else
-  for (std::size_t plane = 0; plane < ColumnBuffer::planes; plane += num_lanes) {
-    Lanes v[num_lanes];
-    for (std::size_t i = 0; i < num_lanes; ++i) v[i] = take(d, i, plane);
-    transpose_fours(d, v[0], v[1], v[2], v[3]);
-    for (std::size_t j = 0; j < num_lanes; ++j) out.plane[plane + j] = v[j];
-  }
-#endif
-  return out;
-}
-
-/// A group of an area on the planes of a batch, while it is taken from where it was summed.
-struct GroupSamples {
-  ColumnBuffer& columns;
-  AreaBuffer& area;
-  int row, column;
-  float* out;  ///< laid out like a group of `area`
-
-  float* first_pixel(int block) const {
-    constexpr int size = AreaBuffer::group_size;
-    return columns.at(size * row + block * block_rows, size * column);
-  }
-};
-
-/// Takes a channel of a block of the group from the columns, adds what the area holds of it on
-/// planes `summed`, and writes both.
-HWY_INLINE BatchOfBlock take_block(LaneTag d, const GroupSamples& group, int block, int channel,
-                                   AreaBuffer::PlaneBits summed) {
-  const AreaBuffer& area = group.area;
-  const std::size_t at = static_cast<std::size_t>(block) * area.block_floats() +
-                         static_cast<std::size_t>(channel * num_lanes);
-  BatchOfBlock batch = take_channel(d, group.first_pixel(block) + channel * ColumnBuffer::planes,
-                                    group.columns.pixel_floats(), group.columns.row_floats());
-  if (HWY_UNLIKELY(summed != 0)) {
-    const float* const sums = group.area.at(group.row, group.column) + at;
-    for (std::size_t k = 0; k < ColumnBuffer::planes; ++k) {
-      if ((summed >> k & 1) == 0) continue;
-      batch.plane[k] = hn::Add(batch.plane[k], hn::Load(d, sums + k * area.plane_floats()));
-    }
-  }
-  float* out = group.out + at;
-  unroll<ColumnBuffer::planes>([&](std::size_t k) MOTES_INLINE HWY_ATTR {
-    hn::Store(batch.plane[k], d, out);
-    out += area.plane_floats();
-  });
-  return batch;
-}
-
-/// The same for a field's values, channel `channel`: bit k tells that plane k may be seen.
-HWY_NOINLINE std::uint64_t take_values(const GroupSamples& group, int block, int channel,
-                                       AreaBuffer::PlaneBits summed, const Visibility& visibility) {
-  const LaneTag d;
-  const BatchOfBlock batch = take_block(d, group, block, channel, summed);
-  std::uint64_t visible = 0;
-  unroll<ColumnBuffer::planes>([&](std::size_t k) MOTES_INLINE HWY_ATTR {
-    visible |= std::uint64_t{may_be_seen(d, batch.plane[k], visibility)} << k;
-  });
-  return visible;
-}
-
-/// The same for channels `first` to last - 1, of all blocks.
-HWY_NOINLINE void take_channels(const GroupSamples& group, int first, int last,
-                                AreaBuffer::PlaneBits summed) {
-  for (int block = 0; block < group_blocks; ++block) {
-    for (int c = first; c < last; ++c) take_block(LaneTag(), group, block, c, summed);
-  }
-}
-
-/// Sets channels `first` to last - 1 of a group to zero in the columns.
-HWY_NOINLINE void drop_channels(const GroupSamples& group, int first, int last) {
-  const DepthTag d;
-  constexpr int size = AreaBuffer::group_size;
-  for (int y = 0; y < size; ++y) {
-    for (int x = 0; x < size; ++x) {
-      float* const at = group.columns.at(size * group.row + y, size * group.column + x);
-      for (int i = first * ColumnBuffer::planes; i < last * ColumnBuffer::planes;
-           i += depth_lanes) {
-        hn::Store(hn::Zero(d), d, at + i);
-      }
-    }
-  }
 }
 
 }  // namespace HWY_NAMESPACE

@@ -19,6 +19,7 @@
 #include "core/aligned.h"
 #include "field/sweep-inl.h"
 #include "field/sweep_columns-inl.h"
+#include "field/take_columns-inl.h"
 #include "integrate/integrate-inl.h"
 #include "render/ray_packets.h"
 #include "render/ray_state-inl.h"
@@ -188,9 +189,9 @@ class AreaSweep {
   void render_channels(const SlabFrame& frame, const AreaPixels& pixels, int first,
                        const Slab& batch) {
     EvaluationCounts evaluations;
-    if (shapes_.others != 0) sum_by_planes<C>(frame, first, batch.count, evaluations);
+    if (shapes_.others != 0) sum_by_planes<C>(frame, pixels, first, batch.count, evaluations);
     if (shapes_.thin != 0) {
-      const AreaPlanes planes = place_planes(bounds_, frame, first);
+      const AreaPlanes planes = place_planes(pixels, frame, first);
       find_pixels(pixels, planes, memory_.gathered, memory_.thin);
       clock_.lap(Stage::cull);
       const std::size_t field_floats =
@@ -211,13 +212,14 @@ class AreaSweep {
 
   /// Adds the kernels that are not thin to planes `first` to first + count - 1 of the slab.
   template <class C>
-  void sum_by_planes(const SlabFrame& frame, int first, int count, EvaluationCounts& evaluations) {
+  void sum_by_planes(const SlabFrame& frame, const AreaPixels& pixels, int first, int count,
+                     EvaluationCounts& evaluations) {
     std::array<AreaPlane, AreaBuffer::planes> planes;
     for (int k = 0; k < count;) {
       memory_.plane_kernels.clear();
       for (; k < count && memory_.plane_kernels.size() < kernels_at_once; ++k) {
         AreaPlane& plane = planes[static_cast<std::size_t>(k)];
-        plane = place_plane(bounds_, frame, first + k);
+        plane = place_plane(pixels, frame, first + k);
         find_boxes(memory_.gathered, plane, k, memory_.plane_kernels);
       }
       memory_.plane_kernels.sort();

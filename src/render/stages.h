@@ -37,8 +37,8 @@ struct StageTicks {
   }
 };
 
-/// Books the time since it was last asked on a stage. One lap takes about 30 cycles, so laps are
-/// taken of no less than some groups.
+/// Books the time since it was last asked on a stage. One lap takes about 30 cycles: none is
+/// taken for less than some groups of pixels.
 class StageClock {
  public:
   explicit StageClock(StageTicks& out) : out_(out), last_(__rdtsc()) {}

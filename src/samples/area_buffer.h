@@ -30,8 +30,9 @@ class AreaBuffer {
   void reserve(const SampleLayout& layout) {
     const std::size_t block_floats = layout.floats_per_sample();
     const auto num_fields = static_cast<std::size_t>(layout.num_fields);
-    if (block_floats == block_floats_ && num_fields == num_fields_ && layout.lanes == lanes_)
+    if (block_floats == block_floats_ && num_fields == num_fields_ && layout.lanes == lanes_) {
       return;
+    }
     lanes_ = layout.lanes;
     block_floats_ = block_floats;
     plane_floats_ = block_floats * static_cast<std::size_t>(group_pixels / lanes_);

@@ -35,8 +35,6 @@ INSTANTIATE_TEST_SUITE_P(Blocks, EngineSweep, testing::Range(0, num_blocks));
 
 // ---- Scenes that chance does not make -----------------------------------------------------------
 
-/// A scene of one field: radius 1, weight 1, sigma 2; seen along -z from a distance, unlit, 24 x 20
-/// pixels.
 TEST(Engines, LoneParticleOnTheAxis) {
   // The middle ray meets samples at the very centre of the kernel, where the gradient is zero.
   PlainScene s = plain_scene({{0, 0, 0}}, 10.15);
