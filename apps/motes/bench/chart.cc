@@ -141,7 +141,7 @@ class Axis {
 }  // namespace
 
 std::string to_svg(const BarChart& chart) {
-  constexpr double bar = 11, gap = 12, label_height = 110;
+  constexpr double label_height = 110;
   double low = 1e300, high = 0;
   for (const auto& series : chart.series) {
     for (const auto& value : series.values) {
@@ -152,10 +152,15 @@ std::string to_svg(const BarChart& chart) {
   }
   const Axis axis(chart.log, chart.log ? low : 0, high);
   const auto height_of = [&](double value) { return plot_height * axis.place(value); };
-  const double group = bar * static_cast<double>(chart.series.size()) + gap;
-  const double width = group * static_cast<double>(chart.categories.size());
-  Drawing drawing(std::max(left + width + right, captions_width(chart.title, chart.series)),
-                  top + plot_height + label_height);
+  // Bars are 11 wide and groups 12 apart, or as much more as makes the plot as wide as its
+  // captions.
+  const double captions = captions_width(chart.title, chart.series);
+  const auto num_bars = static_cast<double>(chart.series.size());
+  const double narrowest = (11 * num_bars + 12) * static_cast<double>(chart.categories.size());
+  const double stretch = std::max(1.0, (captions - left - right) / narrowest);
+  const double bar = 11 * stretch, gap = 12 * stretch, width = narrowest * stretch;
+  const double group = bar * num_bars + gap;
+  Drawing drawing(left + width + right, top + plot_height + label_height);
   draw_captions(drawing, chart.title, chart.value_name, chart.series);
   for (const double tick : axis.ticks()) {
     const double y = top + plot_height - height_of(tick);
