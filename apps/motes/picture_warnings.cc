@@ -26,7 +26,7 @@ bool any_in_view(const KernelSet& kernels, const Camera& camera, double aspect) 
   for (std::size_t i = 0; i < kernels.size(); ++i) {
     const std::size_t field = kernels.field.empty() ? 0 : kernels.field[i];
     const double radius =
-        kernels.fields[field].kernel.support_factor * kernels.radius[i] / kernels.length_scale;
+        kernels.fields[field].kernel.support() * kernels.radius[i] / kernels.length_scale;
     const Vector3d from_origin{kernels.x[i], kernels.y[i], kernels.z[i]};
     const Vector3d v = kernels.origin + from_origin / kernels.length_scale - camera.eye;
     const double depth = dot(v, axes.forward);
@@ -44,7 +44,7 @@ bool warn_of_large_steps(const KernelSet& kernels, double step_size, Warnings& w
   double radius = 0, support_radius = 0;
   for (const FieldKernels& field : kernels.fields) {
     radius = std::max(radius, field.max_radius);
-    support_radius = std::max(support_radius, field.kernel.support_factor * field.max_radius);
+    support_radius = std::max(support_radius, field.kernel.support() * field.max_radius);
   }
   if (step_size <= 2 * support_radius) return false;
   warnings.add(

@@ -273,22 +273,48 @@ void add_data_options(CLI::App& command, SceneChanges& changes) {
              read_types);
 }
 
+/// The name of a kernel, or a file with a table.
+SceneChanges::Change read_kernel(const std::string& text) {
+  const auto set = [](Scene& scene, const KernelShape& shape) {
+    scene.kernel.shape = shape;
+    for (Field& field : scene.fields) field.kernel_shape.reset();
+  };
+  if (text.find_first_of("./") != std::string::npos) {
+    return [set, text](Scene& scene) {
+      set(scene, {KernelType::tabulated, read_radial_profile(text)});
+    };
+  }
+  try {
+    const KernelType type = kernel_type_from_name(text);
+    if (type == KernelType::tabulated) bad_value("--kernel", "the file of a table", text);
+    return [set, type](Scene& scene) { set(scene, {type, {}}); };
+  } catch (const Error& error) {
+    throw CLI::ValidationError(fmt::format("--kernel: {}", error.what()),
+                               CLI::ExitCodes::ValidationError);
+  }
+}
+
 void add_field_options(CLI::App& command, SceneChanges& changes) {
   add_number_or_property(command, changes, "--radius", "R",
-                         "standard deviation of the Gaussians, a number or a property\n"
+                         "standard deviation of the Gaussians or radius of other kernels,\n"
+                         "a number or a property\n"
                          "(default: covalent radii, or from smoothing lengths)",
                          positive, &Field::radius);
   add_number_or_property(command, changes, "--weight", "W",
                          "weight of the particles, a number or a property (default: 1,\n"
                          "or mass as a density where the data have sizes and masses)",
                          any_number, &Field::weight);
+  add_option(command, changes, "--kernel", "NAME|FILE",
+             "gaussian, cubic_spline, quintic_spline, wendland_c2, wendland_c4, wendland_c6,\n"
+             "or a file of two columns, distance and value (default: gaussian)",
+             read_kernel);
   add_number(command, changes, "--support-factor", "S",
              "the Gaussians end at S standard deviations (default: 2)", positive,
              [](Scene& scene, double v) {
                scene.kernel.support_factor = v;
                for (Field& field : scene.fields) field.support_factor.reset();
              });
-  add_number(command, changes, "--kernel-scale", "K", "factor on all Gaussians (default: 1)",
+  add_number(command, changes, "--kernel-scale", "K", "factor on all kernels (default: 1)",
              any_number, [](Scene& scene, double v) {
                scene.kernel.kernel_scale = v;
                for (Field& field : scene.fields) field.kernel_scale.reset();

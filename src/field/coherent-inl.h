@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "field/sampling-inl.h"
+#include "field/shapes-inl.h"
 #include "samples/lanes-inl.h"
 #include "samples/samples.h"
 
@@ -25,10 +26,8 @@ namespace HWY_NAMESPACE {
 /// A kernel as the inner loop needs it: place relative to the frame's reference, in camera axes.
 struct PlacedKernel {
   float x, y, z;
-  float exponent_scale;  ///< -log2(e) / (2 radius^2)
   float inverse_radius_sq;
   float peak;       ///< kappa * weight, of a normalised field over the kernel's integral
-  float threshold;  ///< exponent at the support radius
   int first, last;  ///< planes of the slab, both included
 };
 
@@ -36,9 +35,9 @@ struct PlacedKernel {
 /// the first plane, `stride` floats lie between planes. The distance along each ray is measured
 /// from its point closest to the kernel, so that a sample costs one subtraction and two
 /// multiplications before the exponential. Hot: nothing is checked.
-template <bool kGradients, bool kAbsolute>
-HWY_INLINE void accumulate(const PacketFrame& frame, const PlacedKernel& kernel, float* values,
-                           std::size_t stride) {
+template <bool kGradients, bool kAbsolute, class Shape>
+HWY_INLINE void accumulate(const Shape& shape, const PacketFrame& frame, const PlacedKernel& kernel,
+                           float* values, std::size_t stride) {
   const LaneTag d;
   using V = Lanes;
   const std::size_t lanes = hn::Lanes(d);
@@ -61,19 +60,20 @@ HWY_INLINE void accumulate(const PacketFrame& frame, const PlacedKernel& kernel,
   const V closest_sq = hn::MulAdd(closest_x, closest_x,
                                   hn::MulAdd(closest_y, closest_y, hn::Mul(closest_z, closest_z)));
 
-  // exponent = scale (closest_sq + (depth - closest)^2 |D|^2)
-  const V scale = hn::Set(d, kernel.exponent_scale);
+  // What the shape takes: scale (closest_sq + (depth - closest)^2 |D|^2)
+  const V scale = hn::Set(d, Shape::distance_scale * kernel.inverse_radius_sq);
   const V base = hn::Mul(scale, closest_sq), along_scale = hn::Mul(scale, length_sq);
-  const V threshold = hn::Set(d, kernel.threshold), peak = hn::Set(d, kernel.peak);
+  const V peak = hn::Set(d, kernel.peak);
+  const V minus_steepness = hn::Set(d, -kernel.peak * kernel.inverse_radius_sq);
   for (int k = kernel.first; k <= kernel.last; ++k, values += stride) {
     const float depth = frame.slab.first_depth + static_cast<float>(k) * frame.slab.step;
     const V s = hn::Sub(hn::Set(d, depth), closest);
-    const V exponent = hn::MulAdd(hn::Mul(along_scale, s), s, base);
-    const auto inside = hn::Ge(exponent, threshold);
-    const V phi = hn::IfThenElseZero(inside, hn::Mul(peak, exp2_bounded(d, exponent)));
+    const V distance_sq = hn::MulAdd(hn::Mul(along_scale, s), s, base);
+    const RadialLanes<V> radial = shape.template at<kGradients>(d, distance_sq);
+    const V phi = hn::Mul(peak, radial.value);
     hn::Store(hn::Add(phi, hn::Load(d, values)), d, values);
     if constexpr (kGradients) {
-      const V slope = hn::Mul(phi, hn::Set(d, -kernel.inverse_radius_sq));
+      const V slope = hn::Mul(radial.steepness, minus_steepness);
       const V to_sample[3] = {hn::MulAdd(s, direction_x, closest_x),
                               hn::MulAdd(s, direction_y, closest_y), hn::Add(s, closest_z)};
       for (std::size_t i = 0; i < 3; ++i) {
@@ -86,6 +86,13 @@ HWY_INLINE void accumulate(const PacketFrame& frame, const PlacedKernel& kernel,
       hn::Store(hn::Add(hn::Abs(phi), hn::Load(d, absolute)), d, absolute);
     }
   }
+}
+
+/// The same in a function of its own: of shapes that few scenes have.
+template <bool kGradients, bool kAbsolute, class Shape>
+HWY_NOINLINE void accumulate_apart(const Shape& shape, const PacketFrame& frame,
+                                   const PlacedKernel& kernel, float* values, std::size_t stride) {
+  accumulate<kGradients, kAbsolute>(shape, frame, kernel, values, stride);
 }
 
 /// Adds the kernels of a leaf that reach into the frame to the buffer. Returns kernel evaluations.
@@ -107,15 +114,20 @@ HWY_INLINE std::uint64_t accumulate_leaf(const KernelSet& kernels,
     const PlacedKernel kernel{placed.x[i],
                               placed.y[i],
                               placed.z[i],
-                              -0.5f * std::numbers::log2e_v<float> * inverse_radius_sq,
                               inverse_radius_sq,
                               field.peak_factor * kernels.weight[at],
-                              field.threshold,
                               static_cast<int>(placed.first[i]),
                               static_cast<int>(placed.last[i])};
     buffer.touch(buffer_offset + kernel.first, buffer_offset + kernel.last);
-    accumulate<kGradients, kAbsolute>(
-        frame, kernel, buffer.at(buffer_offset + kernel.first, static_cast<int>(f)), stride);
+    float* const values = buffer.at(buffer_offset + kernel.first, static_cast<int>(f));
+    if (HWY_LIKELY(constants.kernels[f]->kernel.shape.type == KernelType::gaussian)) {
+      accumulate<kGradients, kAbsolute>(GaussianShape{field.threshold}, frame, kernel, values,
+                                        stride);
+    } else {
+      with_shape(*constants.kernels[f], [&](const auto& shape) {
+        accumulate_apart<kGradients, kAbsolute>(shape, frame, kernel, values, stride);
+      });
+    }
     samples += static_cast<std::uint64_t>(kernel.last - kernel.first + 1);
   }
   return samples * static_cast<std::uint64_t>(frame.lanes);

@@ -14,7 +14,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <numbers>
 
 #include "core/aligned.h"
 #include "field/sampling-inl.h"
@@ -25,24 +24,28 @@ HWY_BEFORE_NAMESPACE();
 namespace motes {
 namespace HWY_NAMESPACE {
 
-/// Kernels that may reach some rays in a slab: placed in the slab's frame, in the tree's order.
+/// Kernels of one shape that may reach some rays in a slab: placed in the slab's frame, in the
+/// tree's order.
 struct GatheredKernels {
   AlignedVector<float> x, y, z, radius, weight;
   AlignedVector<std::uint32_t> field;
   std::size_t size = 0;
   // What finish_kernels() adds.
   AlignedVector<float> support_sq;
-  AlignedVector<float> plane_support_sq, thin_support_sq;  ///< -1 for kernels of the other shape
-  AlignedVector<float> exponent_scale;                     ///< -log2(e) / (2 radius^2)
+  AlignedVector<float> minus_inverse_radius_sq;
   AlignedVector<float> peak;  ///< kappa * weight, of a normalised field over the kernel's integral
-  AlignedVector<float> cut;   ///< a kernel is zero where its absolute value would be less
+  AlignedVector<float> cut;   ///< a Gaussian is zero where its absolute value would be less
+
+  // What find_thin_kernels() adds.
+  AlignedVector<float> plane_support_sq, thin_support_sq;  ///< -1 for kernels of the other sort
+  std::size_t num_thin = 0, num_others = 0;
 
   /// Makes room for `count` more and for what a vector writes beyond them.
   void reserve(std::size_t count) {
     if (size + count + max_lanes <= x.size()) return;
     const std::size_t room = 2 * (size + count + max_lanes);
     for (auto* array : {&x, &y, &z, &radius, &weight, &support_sq, &plane_support_sq,
-                        &thin_support_sq, &exponent_scale, &peak, &cut}) {
+                        &thin_support_sq, &minus_inverse_radius_sq, &peak, &cut}) {
       array->resize(room);
     }
     field.resize(room);
@@ -65,10 +68,9 @@ inline void finish_kernels(const SamplingConstants& constants, bool one_field,
     const Lanes radius = hn::Load(d, &out.radius[i]);
     const Lanes support = hn::Mul(of_field(first.support_factor), radius);
     const Lanes peak = hn::Mul(of_field(first.peak_factor), hn::Load(d, &out.weight[i]));
-    const Lanes exponent_scale =
-        hn::Div(hn::Set(d, -0.5f * std::numbers::log2e_v<float>), hn::Mul(radius, radius));
     hn::Store(hn::Mul(support, support), d, &out.support_sq[i]);
-    hn::Store(exponent_scale, d, &out.exponent_scale[i]);
+    hn::Store(hn::Div(hn::Set(d, -1.0f), hn::Mul(radius, radius)), d,
+              &out.minus_inverse_radius_sq[i]);
     hn::Store(peak, d, &out.peak[i]);
     hn::Store(hn::Mul(of_field(first.support_value), hn::Abs(peak)), d, &out.cut[i]);
   }
@@ -76,11 +78,12 @@ inline void finish_kernels(const SamplingConstants& constants, bool one_field,
   std::fill_n(out.support_sq.begin() + static_cast<std::ptrdiff_t>(out.size), max_lanes, -1.0f);
 }
 
-/// Finds the kernels that may reach `frustum`.
+/// Finds the kernels of a group of fields that may reach `frustum`.
 HWY_NOINLINE void gather_kernels(const KernelSet& kernels, const SamplingConstants& constants,
-                                 const SlabFrame& frame, const Frustum& frustum,
-                                 GatheredKernels& out) {
+                                 std::uint32_t group, const SlabFrame& frame,
+                                 const Frustum& frustum, GatheredKernels& out) {
   const LaneTag d;
+  const hn::RebindToSigned<LaneTag> di;
   const hn::RebindToUnsigned<LaneTag> du;
   out.size = 0;
   const auto add_leaf = [&](std::size_t leaf) HWY_ATTR {
@@ -90,8 +93,17 @@ HWY_NOINLINE void gather_kernels(const KernelSet& kernels, const SamplingConstan
       const Centers<Lanes> centers = place_centers(d, kernels, at, frame);
       const Lanes radius = hn::Load(d, kernels.radius.from(at));
       const Lanes support = hn::Mul(radius, hn::Set(d, constants.max_support_factor));
-      const LaneMask reaches = may_reach(d, frame, frustum, centers, support);
+      LaneMask reaches = may_reach(d, frame, frustum, centers, support);
       if (hn::AllFalse(d, reaches)) continue;
+      auto field = hn::Zero(du);
+      if (!kernels.field.empty()) {
+        field =
+            hn::PromoteTo(du, hn::LoadU(hn::Rebind<std::uint8_t, LaneTag>(), &kernels.field[at]));
+      }
+      if (HWY_UNLIKELY(constants.num_groups > 1)) {
+        const auto groups = hn::GatherIndex(du, constants.group, hn::BitCast(di, field));
+        reaches = hn::And(reaches, hn::RebindMask(d, hn::Eq(groups, hn::Set(du, group))));
+      }
       const Lanes weight = hn::Load(d, kernels.weight.from(at));
       const FrontLanes front(d, reaches);
       front.store(centers.x, out.x.data() + out.size);
@@ -99,11 +111,6 @@ HWY_NOINLINE void gather_kernels(const KernelSet& kernels, const SamplingConstan
       front.store(centers.z, out.z.data() + out.size);
       front.store(radius, out.radius.data() + out.size);
       front.store(weight, out.weight.data() + out.size);
-      auto field = hn::Zero(du);
-      if (!kernels.field.empty()) {
-        field =
-            hn::PromoteTo(du, hn::LoadU(hn::Rebind<std::uint8_t, LaneTag>(), &kernels.field[at]));
-      }
       front.store(field, out.field.data() + out.size);
       out.size += front.count();
     }

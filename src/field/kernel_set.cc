@@ -8,7 +8,6 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <numbers>
 #include <optional>
 
 #include "core/error.h"
@@ -16,13 +15,12 @@
 namespace motes {
 
 double FieldKernels::peak_factor() const {
-  if (!normalise) return kernel.kernel_scale;
-  // Integral over |s| <= sigma of exp(-s^2/2) in three dimensions.
-  const double sigma = kernel.support_factor;
-  const double integral = std::pow(2 * std::numbers::pi, 1.5) *
-                          (std::erf(sigma / std::numbers::sqrt2) -
-                           std::sqrt(2 / std::numbers::pi) * sigma * std::exp(-sigma * sigma / 2));
-  return kernel.kernel_scale / integral;
+  return normalise ? kernel.kernel_scale / kernel.integral() : kernel.kernel_scale;
+}
+
+void FieldKernels::set_kernel(const Kernel& new_kernel) {
+  kernel = new_kernel;
+  table = kernel.shape.type == KernelType::tabulated ? make_radial_table(kernel) : RadialTable{};
 }
 
 std::size_t KernelSet::particle_bytes() const {
@@ -33,7 +31,7 @@ std::size_t KernelSet::particle_bytes() const {
 Bounds3d KernelSet::box() const {
   double max_support = 0;
   for (const FieldKernels& f : fields) {
-    max_support = std::max(max_support, f.kernel.support_factor * f.max_radius);
+    max_support = std::max(max_support, f.kernel.support() * f.max_radius);
   }
   return centers.extended(max_support);
 }
@@ -121,10 +119,15 @@ WeightRange weight_range(const FieldSource& source, double length_scale) {
 
 FieldKernels summarise(const FieldSource& source, const RadiusRange& radii,
                        const WeightRange& weights, double length_scale) {
-  FieldKernels field{.name = source.name, .kernel = source.kernel, .normalise = source.normalise};
+  FieldKernels field;
+  field.name = source.name;
+  field.set_kernel(source.kernel);
+  field.normalise = source.normalise;
   field.min_radius = static_cast<float>(radii.min * length_scale);
   field.max_radius = radii.max;
-  field.mixed_signs = weights.min < 0 && weights.max > 0;
+  const auto& profile = source.kernel.shape.profile.values;
+  const bool negative = std::any_of(profile.begin(), profile.end(), [](double v) { return v < 0; });
+  field.mixed_signs = negative || (weights.min < 0 && weights.max > 0);
   field.value_scale = unit_scale(weights.magnitude());
   return field;
 }

@@ -10,6 +10,7 @@
 #include "bvh/bvh.h"
 #include "core/aligned.h"
 #include "field/per_kernel.h"
+#include "field/radial_table.h"
 #include "particles/particle_set.h"
 #include "scene/scene.h"
 
@@ -19,15 +20,19 @@ namespace motes {
 struct FieldKernels {
   std::string name;
   Kernel kernel;
+  RadialTable table;  ///< of tabulated kernels
   bool normalise = false;
-  bool mixed_signs = false;  ///< weights of both signs: sum |phi| is not |Phi|
+  bool mixed_signs = false;  ///< kernels of both signs: sum |phi| is not |Phi|
   float min_radius = 0;      ///< internal length
   double max_radius = 0;     ///< file's length
   double value_scale = 1;    ///< internal weight = weight * value_scale, a power of two
 
   /// Factor on an internal weight (already over radius^3 where normalised) that gives a kernel's
-  /// peak: kappa, and with `normalise` one over the integral of exp(-s^2/2) within s <= sigma.
+  /// peak: kappa, and with `normalise` one over the integral of the shape.
   double peak_factor() const;
+
+  /// Of a shape with the same signs.
+  void set_kernel(const Kernel& new_kernel);
 };
 
 /// Positions, radii and weights of all fields' kernels in leaf order of their one tree. A particle

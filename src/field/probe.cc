@@ -29,20 +29,18 @@ void add_leaf(const KernelSet& kernels, std::size_t leaf, const Point3d& p, Fiel
   for (std::size_t i = begin; i < end; ++i) {
     const std::size_t f = kernels.field.empty() ? 0 : kernels.field[i];
     const double radius = kernels.radius[i];
-    const double support = radius * kernels.fields[f].kernel.support_factor;
     const Vector3d d = p - Point3d{kernels.x[i], kernels.y[i], kernels.z[i]};
-    const double distance_sq = dot(d, d);
-    if (distance_sq > support * support) continue;
-    const double phi = kernels.weight[i] * std::exp(-distance_sq / (2 * radius * radius));
-    sums[f].value += phi;
-    sums[f].gradient = sums[f].gradient - (phi / (radius * radius)) * d;
+    const RadialValue phi = evaluate(kernels.fields[f].kernel, length(d) / radius);
+    const double weight = kernels.weight[i];
+    sums[f].value += weight * phi.value;
+    sums[f].gradient = sums[f].gradient - (weight * phi.steepness / (radius * radius)) * d;
   }
 }
 
-double largest_support_factor(const KernelSet& kernels) {
+double largest_support(const KernelSet& kernels) {
   double largest = 0;
   for (const FieldKernels& field : kernels.fields) {
-    largest = std::max(largest, field.kernel.support_factor);
+    largest = std::max(largest, field.kernel.support());
   }
   return largest;
 }
@@ -55,7 +53,7 @@ Point3d to_internal(const KernelSet& kernels, const Point3d& p) {
 
 std::vector<FieldSample> probe(const KernelSet& kernels, std::span<const Point3d> points) {
   const std::size_t num_fields = kernels.fields.size();
-  const double support_factor = largest_support_factor(kernels);
+  const double support_factor = largest_support(kernels);
   std::vector<double> unit;  // from internal values to the field's
   for (const FieldKernels& field : kernels.fields) {
     unit.push_back(field.peak_factor() / field.value_scale);
@@ -81,7 +79,7 @@ std::vector<FieldSample> probe(const KernelSet& kernels, std::span<const Point3d
 }
 
 double mean_kernels_tested(const KernelSet& kernels, std::span<const Point3d> points) {
-  const double support_factor = largest_support_factor(kernels);
+  const double support_factor = largest_support(kernels);
   std::size_t leaves = 0;
   for (const Point3d& point : points) {
     const Point3d p = to_internal(kernels, point);

@@ -55,19 +55,40 @@ HWY_INLINE V exp2_bounded(D d, V x) {
 struct FieldConstants {
   float support_factor;
   float peak_factor;
+  // Of Gaussians:
   float threshold;      ///< exponent (base 2) at the support radius: -sigma^2/2 log2(e)
   float support_value;  ///< 2^threshold
 };
 
 struct SamplingConstants {
   FieldConstants fields[max_fields];
+  const FieldKernels* kernels[max_fields];  ///< of the fields
   float max_support_factor = 0;
+  /// Fields whose kernels have one shape are a group: its number, one a field, and its first field.
+  std::uint32_t group[max_fields];
+  std::uint32_t first_field[max_fields];
+  std::uint32_t num_groups = 0;
+
+  KernelType type(std::uint32_t group_number) const {
+    return kernels[first_field[group_number]]->kernel.shape.type;
+  }
 };
+
+/// The number of field f's group: that of an earlier field of its shape, or a new one. Each table
+/// is a shape of its own.
+inline std::uint32_t find_group(const SamplingConstants& constants, const FieldKernels& field) {
+  const KernelType type = field.kernel.shape.type;
+  std::uint32_t g = 0;
+  while (g < constants.num_groups && (type == KernelType::tabulated || constants.type(g) != type)) {
+    ++g;
+  }
+  return g;
+}
 
 inline SamplingConstants make_constants(const KernelSet& kernels) {
   SamplingConstants constants;
   for (std::size_t f = 0; f < kernels.fields.size(); ++f) {
-    const double sigma = kernels.fields[f].kernel.support_factor;
+    const double sigma = kernels.fields[f].kernel.support();
     const double threshold =
         std::max(-0.5 * sigma * sigma * std::numbers::log2e, static_cast<double>(min_exponent));
     constants.fields[f] = {static_cast<float>(sigma),
@@ -75,6 +96,11 @@ inline SamplingConstants make_constants(const KernelSet& kernels) {
                            static_cast<float>(threshold), static_cast<float>(std::exp2(threshold))};
     constants.max_support_factor =
         std::max(constants.max_support_factor, static_cast<float>(sigma));
+    constants.kernels[f] = &kernels.fields[f];
+    constants.group[f] = find_group(constants, kernels.fields[f]);
+    if (constants.group[f] == constants.num_groups) {
+      constants.first_field[constants.num_groups++] = static_cast<std::uint32_t>(f);
+    }
   }
   return constants;
 }

@@ -4,7 +4,8 @@
 // On a plane of constant depth a sample's squared distance to a kernel's centre is a sum of one
 // term for its column of pixels and one for its row, so the Gaussian is a product of a column
 // factor and a row factor: a few vectors of exponentials serve all samples that the kernel reaches
-// there (docs/sweep.md).
+// there (docs/sweep.md). Kernels of other shapes are functions of the sum. What is worked out for
+// columns and rows is called a factor in either case.
 #if defined(MOTES_FIELD_SWEEP_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef MOTES_FIELD_SWEEP_INL_H_
 #undef MOTES_FIELD_SWEEP_INL_H_
@@ -20,11 +21,11 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <numbers>
 #include <span>
 
 #include "field/gather-inl.h"
 #include "field/sampling-inl.h"
+#include "field/shapes-inl.h"
 #include "field/sweep_boxes-inl.h"
 #include "samples/area_buffer.h"
 #include "samples/lanes-inl.h"
@@ -37,11 +38,12 @@ namespace HWY_NAMESPACE {
 inline constexpr int block_rows = num_lanes / AreaBuffer::group_size;
 inline constexpr int group_blocks = AreaBuffer::group_pixels / num_lanes;
 
-/// Which channels there are, known to the compiler.
-template <bool kGradientsV, bool kAbsoluteV, bool kCountV = false>
+/// Which channels there are and what shape the kernels have, known to the compiler.
+template <bool kGradientsV, bool kAbsoluteV, bool kCountV = false, class ShapeV = GaussianShape>
 struct Channels {
+  using Shape = ShapeV;
   static constexpr bool gradients = kGradientsV, absolute = kAbsoluteV;
-  /// Counts the samples inside of supports, which takes time.
+  /// Counts the samples inside of supports, which takes time; of Gaussians alone.
   static constexpr bool count = kCountV;
 };
 
@@ -50,13 +52,11 @@ struct SweptKernel {
   float x, y;  ///< of the first column and row of its box, relative to the centre
   float dx, dy;
   float dz;  ///< of the plane, relative to the centre
-  float exponent_scale, peak, cut;
-  float minus_inverse_radius_sq;
+  float minus_inverse_radius_sq, peak;
 };
 
 HWY_INLINE SweptKernel place_kernel(const GatheredKernels& gathered, std::size_t i,
                                     const AreaPlane& plane, const KernelBox& box) {
-  const float scale = gathered.exponent_scale[i];
   const auto first_column = static_cast<float>(box.column * AreaBuffer::group_size);
   const auto first_row = static_cast<float>(box.row * AreaBuffer::group_size);
   return {plane.x + first_column * plane.dx - gathered.x[i],
@@ -64,10 +64,8 @@ HWY_INLINE SweptKernel place_kernel(const GatheredKernels& gathered, std::size_t
           plane.dx,
           plane.dy,
           plane.z - gathered.z[i],
-          scale,
-          gathered.peak[i],
-          gathered.cut[i],
-          scale * (2 / std::numbers::log2e_v<float>)};
+          gathered.minus_inverse_radius_sq[i],
+          gathered.peak[i]};
 }
 
 /// 2^exponent for exponents of at most 0; 0 where that is too small for a float.
@@ -90,9 +88,22 @@ HWY_INLINE V factor_of(D d, V exponent) {
 #endif
 }
 
+/// A column's or row's share of a kernel from its share of the squared distance: a factor of a
+/// Gaussian, of other shapes that share itself, in their units.
+template <class Shape, class D, class V = hn::Vec<D>>
+HWY_INLINE V share_of(D d, V minus_inverse_radius_sq, V distance_sq) {
+  const V scale = hn::Mul(minus_inverse_radius_sq, hn::Set(d, -Shape::distance_scale));
+  const V scaled = hn::Mul(scale, distance_sq);
+  if constexpr (Shape::is_product) {
+    return factor_of(d, scaled);
+  } else {
+    return scaled;
+  }
+}
+
 /// A kernel's factors in the columns and rows of its box, for at most so many groups of each.
-/// Column factors carry the peak; with gradients each has its derivative's part: the coordinate
-/// relative to the centre times minus_inverse_radius_sq.
+/// Column factors of Gaussians carry the peak; with gradients each has its derivative's part: the
+/// coordinate relative to the centre times minus_inverse_radius_sq.
 template <int kColumns, int kRows, class C>
 struct BoxFactors {
   static constexpr int room(int groups) {
@@ -105,20 +116,24 @@ struct BoxFactors {
 
   /// Those of the first `columns` and `rows` groups.
   HWY_INLINE void fill(LaneTag d, const SweptKernel& kernel, int columns, int rows) {
-    const Lanes scale = hn::Set(d, kernel.exponent_scale), peak = hn::Set(d, kernel.peak);
     const Lanes slope = hn::Set(d, kernel.minus_inverse_radius_sq);
+    const Lanes peak = hn::Set(d, kernel.peak);
+    const auto share = [&](Lanes distance_sq) MOTES_INLINE HWY_ATTR {
+      return share_of<typename C::Shape>(d, slope, distance_sq);
+    };
     const auto coordinates = [&](int i, float first, float step) HWY_ATTR {
       return hn::MulAdd(hn::Iota(d, static_cast<float>(i)), hn::Set(d, step), hn::Set(d, first));
     };
     for (int i = 0; i < columns * AreaBuffer::group_size; i += num_lanes) {
       const Lanes x = coordinates(i, kernel.x, kernel.dx);
-      hn::Store(hn::Mul(peak, factor_of(d, hn::Mul(scale, hn::Mul(x, x)))), d, column + i);
+      const Lanes of_column = share(hn::Mul(x, x));
+      hn::Store(C::Shape::is_product ? hn::Mul(peak, of_column) : of_column, d, column + i);
       if constexpr (C::gradients) hn::Store(hn::Mul(x, slope), d, column_slope + i);
     }
     const Lanes dz_sq = hn::Set(d, kernel.dz * kernel.dz);
     for (int i = 0; i < rows * AreaBuffer::group_size; i += num_lanes) {
       const Lanes y = coordinates(i, kernel.y, kernel.dy);
-      hn::Store(factor_of(d, hn::Mul(scale, hn::MulAdd(y, y, dz_sq))), d, row + i);
+      hn::Store(share(hn::MulAdd(y, y, dz_sq)), d, row + i);
       if constexpr (C::gradients) hn::Store(hn::Mul(y, slope), d, row_slope + i);
     }
     slope_z = kernel.dz * kernel.minus_inverse_radius_sq;
@@ -154,12 +169,19 @@ HWY_INLINE V add_inside(D, hn::Mask<D> inside, V v, V sum) {
 template <class C>
 struct RowFactors {
   Lanes row[group_blocks], slope[C::gradients ? group_blocks : 1];
-  Lanes slope_z, cut;
+  Lanes slope_z, height;
 };
+
+/// What add_to_samples() needs of a kernel besides its factors: of a Gaussian where it is cut off,
+/// of others the peak.
+template <class Shape>
+HWY_INLINE float height_of(const GatheredKernels& gathered, std::size_t i) {
+  return Shape::is_product ? gathered.cut[i] : gathered.peak[i];
+}
 
 template <int kColumns, int kRows, class C>
 HWY_INLINE RowFactors<C> spread_group(LaneTag d, const BoxFactors<kColumns, kRows, C>& factors,
-                                      float cut, int row) {
+                                      float height, int row) {
   RowFactors<C> out;
   for (int v = 0; v < group_blocks; ++v) {
     out.row[v] = spread_rows(d, factors.row + AreaBuffer::group_size * row, v);
@@ -168,48 +190,62 @@ HWY_INLINE RowFactors<C> spread_group(LaneTag d, const BoxFactors<kColumns, kRow
     }
   }
   out.slope_z = hn::Set(d, factors.slope_z);
-  out.cut = hn::Set(d, cut);
+  out.height = hn::Set(d, height);
   return out;
 }
 
-/// How a kernel's gradient follows from its value: what each component is multiplied by.
+/// How a kernel's gradient follows from its steepness: what each component is multiplied by.
 template <class V>
 struct GradientSlopes {
   V x, y, z;
 };
 
-/// Adds a kernel's values, before they are cut off below `cut`, to samples of a field: channel 0 at
-/// `samples`, each further one `channel_floats` behind. Returns how many samples lie inside of the
-/// support, if C::count.
+/// Adds a kernel to samples of a field: channel 0 at `samples`, each further one `channel_floats`
+/// behind. `column` and `row` are the samples' factors, `height` is as height_of(). Returns how
+/// many samples lie inside of the support, if C::count.
 template <class C, class D, class V = hn::Vec<D>>
-HWY_INLINE std::uint64_t add_to_samples(D d, V values, V cut, const GradientSlopes<V>& slopes,
-                                        float* samples, int channel_floats) {
-  // The kernel ends where its value falls below that at the support radius: no distance is needed.
-  const V magnitude = hn::Abs(values);
-  const auto inside = hn::Ge(magnitude, cut);
-  hn::Store(add_inside(d, inside, values, hn::Load(d, samples)), d, samples);
-  if constexpr (C::gradients) {
-    const V phi = hn::IfThenElseZero(inside, values);
+HWY_INLINE std::uint64_t add_to_samples(D d, const typename C::Shape& shape, V column, V row,
+                                        V height, const GradientSlopes<V>& slopes, float* samples,
+                                        int channel_floats) {
+  const auto add_gradient = [&](V steepness) MOTES_INLINE HWY_ATTR {
     const auto add = [&](int channel, V slope) MOTES_INLINE HWY_ATTR {
       float* const gradient = samples + channel * channel_floats;
-      hn::Store(hn::MulAdd(phi, slope, hn::Load(d, gradient)), d, gradient);
+      hn::Store(hn::MulAdd(steepness, slope, hn::Load(d, gradient)), d, gradient);
     };
     add(1, slopes.x);
     add(2, slopes.y);
     add(3, slopes.z);
+  };
+  float* const absolute = samples + 4 * channel_floats;
+  if constexpr (C::Shape::is_product) {
+    // The kernel ends where its value falls below that at the support radius: no distance is
+    // needed.
+    const V values = hn::Mul(column, row), magnitude = hn::Abs(values);
+    const auto inside = hn::Ge(magnitude, height);
+    hn::Store(add_inside(d, inside, values, hn::Load(d, samples)), d, samples);
+    if constexpr (C::gradients) add_gradient(hn::IfThenElseZero(inside, values));
+    if constexpr (C::absolute) {
+      hn::Store(add_inside(d, inside, magnitude, hn::Load(d, absolute)), d, absolute);
+    }
+    return C::count ? hn::CountTrue(d, inside) : 0;
+  } else {
+    const auto phi = shape.template at<C::gradients>(d, hn::Add(column, row));
+    hn::Store(hn::MulAdd(height, phi.value, hn::Load(d, samples)), d, samples);
+    if constexpr (C::gradients) add_gradient(hn::Mul(height, phi.steepness));
+    if constexpr (C::absolute) {
+      const V magnitude = hn::Abs(hn::Mul(height, phi.value));
+      hn::Store(hn::Add(magnitude, hn::Load(d, absolute)), d, absolute);
+    }
+    return 0;
   }
-  if constexpr (C::absolute) {
-    float* const absolute = samples + 4 * channel_floats;
-    hn::Store(add_inside(d, inside, magnitude, hn::Load(d, absolute)), d, absolute);
-  }
-  return C::count ? hn::CountTrue(d, inside) : 0;
 }
 
 /// Adds a kernel to the samples of a group: `column` is that of the group in the kernel's box,
 /// `samples` the field's channel 0 in the group's first block. Returns how many samples lie inside
 /// of the support, if C::count.
 template <int kColumns, int kRows, class C>
-HWY_INLINE std::uint64_t add_to_group(LaneTag d, const BoxFactors<kColumns, kRows, C>& factors,
+HWY_INLINE std::uint64_t add_to_group(LaneTag d, const typename C::Shape& shape,
+                                      const BoxFactors<kColumns, kRows, C>& factors,
                                       const RowFactors<C>& rows, int column, float* samples,
                                       std::size_t block_floats) {
   std::uint64_t inside_support = 0;
@@ -222,7 +258,7 @@ HWY_INLINE std::uint64_t add_to_group(LaneTag d, const BoxFactors<kColumns, kRow
   for (int v = 0; v < group_blocks; ++v, samples += block_floats) {
     if constexpr (C::gradients) slopes.y = rows.slope[v];
     inside_support +=
-        add_to_samples<C>(d, hn::Mul(columns, rows.row[v]), rows.cut, slopes, samples, num_lanes);
+        add_to_samples<C>(d, shape, columns, rows.row[v], rows.height, slopes, samples, num_lanes);
   }
   return inside_support;
 }
@@ -318,7 +354,7 @@ struct KernelBatch {
   static constexpr std::size_t most = 16;
   struct Member {
     KernelBox box;
-    float cut;
+    float height;
     float* samples;                  ///< of the box's first group: the field's channel 0
     AreaBuffer::PlaneBits* touched;  ///< of the box's first group, the field's
     AreaBuffer::PlaneBits bit;       ///< the plane's
@@ -338,27 +374,31 @@ struct KernelBatch {
       const std::size_t k = list[0].kernel, plane = list[0].plane;
       Member& out = members[count++];
       out.box = box;
-      out.cut = gathered.cut[k];
+      out.height = height_of<typename C::Shape>(gathered, k);
       out.samples = samples.at(box.row, box.column, gathered.field[k], plane);
       out.touched = samples.buffer.touched(box.row, box.column) + gathered.field[k];
       out.bit = AreaBuffer::PlaneBits{1} << plane;
       const SweptKernel kernel = place_kernel(gathered, k, samples.planes[plane], box);
-      out.factors.fill(d, kernel, kWide ? box.columns() : kColumns, box.rows());
+      const bool any_columns = kWide || !C::Shape::is_product;
+      out.factors.fill(d, kernel, any_columns ? box.columns() : kColumns, box.rows());
       if constexpr (kWide) out.reached.find(d, kernel, gathered.support_sq[k], box);
     }
   }
 };
 
 /// Adds kernels whose boxes have kColumns columns to all of their groups: no branch depends on
-/// which of these a kernel reaches, and few do not.
+/// which of these a kernel reaches, and few do not. Of shapes that are no products, boxes may have
+/// fewer: their loops are long enough without being made for a number of columns.
 template <int kColumns, class C>
-HWY_NOINLINE void add_narrow_kernels(LaneTag d, const GatheredKernels& gathered,
+HWY_NOINLINE void add_narrow_kernels(LaneTag d, const typename C::Shape& shape,
+                                     const GatheredKernels& gathered,
                                      std::span<const BoxedKernel> list, const PlaneSamples& samples,
                                      EvaluationCounts& counts) {
   const std::size_t row_floats = samples.buffer.row_floats();
   const std::size_t group_floats = samples.buffer.group_floats();
   const std::size_t block_floats = samples.buffer.block_floats();
   const std::size_t num_fields = samples.buffer.num_fields();
+  const typename C::Shape local = shape;  // so that what it holds may stay in registers
   KernelBatch<kColumns, C> batch;
   while (!list.empty()) {
     batch.fill(d, gathered, samples, list);
@@ -366,19 +406,20 @@ HWY_NOINLINE void add_narrow_kernels(LaneTag d, const GatheredKernels& gathered,
       const auto& kernel = batch.members[i];
       AreaBuffer::PlaneBits* touched = kernel.touched;
       float* group = kernel.samples;
+      const int columns = C::Shape::is_product ? kColumns : kernel.box.columns();
       for (int row = 0; row < kernel.box.rows(); ++row) {
-        const auto rows = spread_group(d, kernel.factors, kernel.cut, row);
-        for (int column = 0; column < kColumns; ++column) {
+        const auto rows = spread_group(d, kernel.factors, kernel.height, row);
+        for (int column = 0; column < columns; ++column) {
           touched[static_cast<std::size_t>(column) * num_fields] |= kernel.bit;
           counts.inside_support +=
-              add_to_group(d, kernel.factors, rows, column,
+              add_to_group(d, local, kernel.factors, rows, column,
                            group + static_cast<std::size_t>(column) * group_floats, block_floats);
         }
         group += row_floats;
         touched += AreaBuffer::groups * num_fields;
       }
       counts.carried_out +=
-          static_cast<std::uint64_t>(kernel.box.rows()) * kColumns * AreaBuffer::group_pixels;
+          static_cast<std::uint64_t>(kernel.box.rows() * columns * AreaBuffer::group_pixels);
     }
   }
 }
@@ -386,12 +427,14 @@ HWY_NOINLINE void add_narrow_kernels(LaneTag d, const GatheredKernels& gathered,
 /// Adds kernels with boxes of any size to the groups that they reach, but where no ray is under
 /// way.
 template <class C>
-HWY_NOINLINE void add_wide_kernels(LaneTag d, const GatheredKernels& gathered,
+HWY_NOINLINE void add_wide_kernels(LaneTag d, const typename C::Shape& shape,
+                                   const GatheredKernels& gathered,
                                    std::span<const BoxedKernel> list, const PlaneSamples& samples,
                                    EvaluationCounts& counts) {
   const std::size_t row_floats = samples.buffer.row_floats();
   const std::size_t group_floats = samples.buffer.group_floats();
   const std::size_t num_fields = samples.buffer.num_fields();
+  const typename C::Shape local = shape;
   KernelBatch<AreaBuffer::groups, C> batch;
   while (!list.empty()) {
     batch.fill(d, gathered, samples, list);
@@ -406,7 +449,7 @@ HWY_NOINLINE void add_wide_kernels(LaneTag d, const GatheredKernels& gathered,
         const int first = std::countr_zero(reached_live);
         const int count = std::bit_width(reached_live) - first;
         counts.carried_out += static_cast<std::uint64_t>(count) * AreaBuffer::group_pixels;
-        const auto rows = spread_group(d, kernel.factors, kernel.cut, row);
+        const auto rows = spread_group(d, kernel.factors, kernel.height, row);
         float* group = kernel.samples + static_cast<std::size_t>(row) * row_floats +
                        static_cast<std::size_t>(first) * group_floats;
         AreaBuffer::PlaneBits* touched =
@@ -414,8 +457,8 @@ HWY_NOINLINE void add_wide_kernels(LaneTag d, const GatheredKernels& gathered,
             static_cast<std::size_t>(row * AreaBuffer::groups + first) * num_fields;
         for (int column = first; column < first + count; ++column) {
           *touched |= kernel.bit;
-          counts.inside_support +=
-              add_to_group(d, kernel.factors, rows, column, group, samples.buffer.block_floats());
+          counts.inside_support += add_to_group(d, local, kernel.factors, rows, column, group,
+                                                samples.buffer.block_floats());
           touched += num_fields;
           group += group_floats;
         }
@@ -426,14 +469,23 @@ HWY_NOINLINE void add_wide_kernels(LaneTag d, const GatheredKernels& gathered,
 
 /// Adds the kernels that reach some planes, sorted, to their samples.
 template <class C>
-void sum_planes(const GatheredKernels& gathered, const PlaneKernels& kernels,
-                const PlaneSamples& samples, EvaluationCounts& counts) {
+void sum_planes(const typename C::Shape& shape, const GatheredKernels& gathered,
+                const PlaneKernels& kernels, const PlaneSamples& samples,
+                EvaluationCounts& counts) {
   const LaneTag d;
-  unroll<max_box_shape - 1>([&](auto i) HWY_ATTR {
-    constexpr std::size_t columns = i + 1;
-    add_narrow_kernels<columns, C>(d, gathered, with_columns(kernels, columns), samples, counts);
-  });
-  add_wide_kernels<C>(d, gathered, with_columns(kernels, max_box_shape), samples, counts);
+  if constexpr (C::Shape::is_product) {
+    unroll<max_box_shape - 1>([&](auto i) HWY_ATTR {
+      constexpr std::size_t columns = i + 1;
+      add_narrow_kernels<columns, C>(d, shape, gathered, with_columns(kernels, columns, columns),
+                                     samples, counts);
+    });
+  } else {
+    constexpr std::size_t most = max_box_shape - 1;
+    add_narrow_kernels<most, C>(d, shape, gathered, with_columns(kernels, 1, most), samples,
+                                counts);
+  }
+  add_wide_kernels<C>(d, shape, gathered, with_columns(kernels, max_box_shape, max_box_shape),
+                      samples, counts);
 }
 
 }  // namespace HWY_NAMESPACE

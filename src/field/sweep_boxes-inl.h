@@ -113,9 +113,10 @@ class SortedKernels {
 inline constexpr std::uint32_t max_box_shape = 7;
 using PlaneKernels = SortedKernels<std::size_t{max_box_shape * max_box_shape}>;
 
-/// Those whose boxes have so many columns, or at least as many if it is max_box_shape.
-inline std::span<const BoxedKernel> with_columns(const PlaneKernels& kernels, std::size_t columns) {
-  return kernels.with_keys((columns - 1) * max_box_shape, columns * max_box_shape);
+/// Those whose boxes have from `fewest` to `most` columns, or more if that is max_box_shape.
+inline std::span<const BoxedKernel> with_columns(const PlaneKernels& kernels, std::size_t fewest,
+                                                 std::size_t most) {
+  return kernels.with_keys((fewest - 1) * max_box_shape, most * max_box_shape);
 }
 
 /// First and last group of pixels, not yet rounded down, of those along one axis that lie within

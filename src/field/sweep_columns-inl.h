@@ -15,7 +15,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <numbers>
 #include <span>
 
 #include "field/area_pixels.h"
@@ -80,22 +79,17 @@ struct SupportParts {
   }
 };
 
-/// How many kernels of either shape may reach a slab.
-struct ShapeCounts {
-  std::size_t thin = 0, others = 0;
-};
-
 /// Tells thin kernels from others: they cover few pixels, and pixel by pixel cost less than plane
-/// by plane. Sets support_sq of either shape.
-HWY_NOINLINE ShapeCounts find_thin_kernels(const AreaPixels& pixels, const SlabFrame& frame,
-                                           GatheredKernels& gathered) {
+/// by plane. Sets support_sq of either.
+HWY_NOINLINE void find_thin_kernels(const AreaPixels& pixels, const SlabFrame& frame,
+                                    GatheredKernels& gathered) {
   const LaneTag d;
   const Lanes near = hn::Set(d, frame.first_depth), per_step = hn::Set(d, 1 / frame.step);
   const Lanes far =
       hn::MulAdd(hn::Set(d, static_cast<float>(frame.count - 1)), hn::Set(d, frame.step), near);
   const Lanes one = hn::Set(d, 1.0f), two = hn::Set(d, 2.0f), none = hn::Set(d, -1.0f);
   const Lanes most = hn::Set(d, max_thin_pixels - 0.02f);  // room for rounding
-  ShapeCounts counts;
+  gathered.num_thin = gathered.num_others = 0;
   for (std::size_t i = 0; i < gathered.size; i += num_lanes) {
     const Lanes support_sq = hn::Load(d, &gathered.support_sq[i]);
     const LaneMask there = hn::Ge(support_sq, hn::Zero(d));
@@ -120,10 +114,9 @@ HWY_NOINLINE ShapeCounts find_thin_kernels(const AreaPixels& pixels, const SlabF
     const LaneMask thin = hn::And(there, hn::And(fits, pays));
     hn::Store(hn::IfThenElse(thin, none, support_sq), d, &gathered.plane_support_sq[i]);
     hn::Store(hn::IfThenElse(thin, support_sq, none), d, &gathered.thin_support_sq[i]);
-    counts.thin += hn::CountTrue(d, thin);
-    counts.others += hn::CountTrue(d, hn::AndNot(thin, there));
+    gathered.num_thin += hn::CountTrue(d, thin);
+    gathered.num_others += hn::CountTrue(d, hn::AndNot(thin, there));
   }
-  return counts;
 }
 
 /// Thin kernels by their boxes' columns and rows.
@@ -198,9 +191,11 @@ struct DepthFactors {
   HWY_INLINE void fill(DepthTag d, const GatheredKernels& gathered, const AreaPlanes& planes,
                        const BoxedKernel& kernel) {
     const std::size_t k = kernel.kernel, first = kernel.plane;
-    const DepthLanes scale = hn::Set(d, gathered.exponent_scale[k]);
+    const DepthLanes slope = hn::Set(d, gathered.minus_inverse_radius_sq[k]);
     const DepthLanes peak = hn::Set(d, gathered.peak[k]);
-    const DepthLanes slope = hn::Mul(scale, hn::Set(d, 2 / std::numbers::log2e_v<float>));
+    const auto share = [&](DepthLanes distance_sq) MOTES_INLINE HWY_ATTR {
+      return share_of<typename C::Shape>(d, slope, distance_sq);
+    };
     const DepthLanes dz = hn::Sub(hn::Load(d, planes.z + first), hn::Set(d, gathered.z[k]));
     const DepthLanes dz_sq = hn::Mul(dz, dz);
     if constexpr (C::gradients) hn::Store(hn::Mul(dz, slope), d, slope_z);
@@ -211,14 +206,16 @@ struct DepthFactors {
       return hn::MulAdd(hn::Set(d, static_cast<float>(pixel)), hn::Load(d, spacings + first),
                         from_first);
     };
-    for (int i = 0; i < kColumns; ++i) {
+    const int columns = C::Shape::is_product ? kColumns : kernel.box.columns();
+    for (int i = 0; i < columns; ++i) {
       const DepthLanes x = place(planes.x, planes.dx, gathered.x[k], kernel.box.column + i);
-      hn::Store(hn::Mul(peak, factor_of(d, hn::Mul(scale, hn::Mul(x, x)))), d, column[i]);
+      const DepthLanes of_column = share(hn::Mul(x, x));
+      hn::Store(C::Shape::is_product ? hn::Mul(peak, of_column) : of_column, d, column[i]);
       if constexpr (C::gradients) hn::Store(hn::Mul(x, slope), d, column_slope[i]);
     }
     for (int i = 0; i < kernel.box.rows(); ++i) {
       const DepthLanes y = place(planes.y, planes.dy, gathered.y[k], kernel.box.row + i);
-      hn::Store(factor_of(d, hn::Mul(scale, hn::MulAdd(y, y, dz_sq))), d, row[i]);
+      hn::Store(share(hn::MulAdd(y, y, dz_sq)), d, row[i]);
       if constexpr (C::gradients) hn::Store(hn::Mul(y, slope), d, row_slope[i]);
     }
   }
@@ -256,8 +253,8 @@ struct ThinBatch {
   static constexpr std::size_t most = 8;
   struct Member {
     float* samples;  ///< of the box's first pixel: the field's channel 0
-    int rows;
-    float cut;
+    int columns, rows;
+    float height;
     DepthFactors<kColumns, C> factors;
   };
   Member members[most];
@@ -273,21 +270,34 @@ struct ThinBatch {
       Member& out = members[count++];
       out.samples = samples.buffer.at(kernel.box.row, kernel.box.column) + kernel.plane +
                     gathered.field[kernel.kernel] * samples.field_floats;
+      out.columns = kernel.box.columns();
       out.rows = kernel.box.rows();
-      out.cut = gathered.cut[kernel.kernel];
+      out.height = height_of<typename C::Shape>(gathered, kernel.kernel);
       out.factors.fill(d, gathered, samples.planes, kernel);
     }
   }
 };
 
-/// Adds thin kernels whose boxes have kColumns columns.
+/// Calls each(i) for the columns of a thin kernel: kColumns of them or, if the shape is no product,
+/// up to as many.
+template <int kColumns, class C, class Each>
+HWY_INLINE void for_columns(int columns, Each&& each) {
+  if constexpr (C::Shape::is_product) {
+    unroll<kColumns>(each);
+  } else {
+    for (int i = 0; i < columns; ++i) each(static_cast<std::size_t>(i));
+  }
+}
+
+/// Adds thin kernels whose boxes have kColumns columns, or, as add_narrow_kernels(), up to as many.
 template <int kColumns, class C>
-HWY_NOINLINE void add_thin_kernels(const GatheredKernels& gathered,
+HWY_NOINLINE void add_thin_kernels(const typename C::Shape& shape, const GatheredKernels& gathered,
                                    std::span<const BoxedKernel> list, const ColumnSamples& samples,
                                    EvaluationCounts& counts) {
   const DepthTag d;
   const std::size_t pixel_floats = samples.buffer.pixel_floats();
   const std::size_t row_floats = samples.buffer.row_floats();
+  const typename C::Shape local = shape;
   ThinBatch<kColumns, C> batch;
   while (!list.empty()) {
     batch.fill(d, gathered, samples, list);
@@ -296,36 +306,42 @@ HWY_NOINLINE void add_thin_kernels(const GatheredKernels& gathered,
       const DepthFactors<kColumns, C>& factors = kernel.factors;
       // What pixels have in common is kept in registers, which the compiler could not do by itself:
       // factors might be among the samples.
-      const DepthLanes cut = hn::Set(d, kernel.cut);
-      GradientSlopes<DepthLanes> slopes{cut, cut, cut};
+      const DepthLanes height = hn::Set(d, kernel.height);
+      GradientSlopes<DepthLanes> slopes{height, height, height};
       if constexpr (C::gradients) slopes.z = hn::Load(d, factors.slope_z);
       float* first = kernel.samples;
       for (int j = 0; j < kernel.rows; ++j, first += row_floats) {
         const DepthLanes row = hn::Load(d, factors.row[j]);
         if constexpr (C::gradients) slopes.y = hn::Load(d, factors.row_slope[j]);
         float* pixel = first;
-        unroll<kColumns>([&](std::size_t i) MOTES_INLINE HWY_ATTR {
+        for_columns<kColumns, C>(kernel.columns, [&](std::size_t i) MOTES_INLINE HWY_ATTR {
           if constexpr (C::gradients) slopes.x = hn::Load(d, factors.column_slope[i]);
-          counts.inside_support +=
-              add_to_samples<C>(d, hn::Mul(row, hn::Load(d, factors.column[i])), cut, slopes, pixel,
-                                ColumnBuffer::planes);
+          counts.inside_support += add_to_samples<C>(d, local, hn::Load(d, factors.column[i]), row,
+                                                     height, slopes, pixel, ColumnBuffer::planes);
           pixel += pixel_floats;
         });
       }
-      counts.carried_out += static_cast<std::uint64_t>(kernel.rows) * kColumns * depth_lanes;
+      counts.carried_out += static_cast<std::uint64_t>(kernel.rows * kernel.columns * depth_lanes);
     }
   }
 }
 
 /// Adds thin kernels, all shapes of boxes in turn.
 template <class C>
-void sum_columns(const GatheredKernels& gathered, const ThinKernels& kernels,
-                 const ColumnSamples& samples, EvaluationCounts& counts) {
-  unroll<max_thin_pixels>([&](auto i) HWY_ATTR {
-    const std::size_t first = i * max_thin_pixels;
-    add_thin_kernels<i + 1, C>(gathered, kernels.with_keys(first, first + max_thin_pixels), samples,
-                               counts);
-  });
+void sum_columns(const typename C::Shape& shape, const GatheredKernels& gathered,
+                 const ThinKernels& kernels, const ColumnSamples& samples,
+                 EvaluationCounts& counts) {
+  if constexpr (C::Shape::is_product) {
+    unroll<max_thin_pixels>([&](auto i) HWY_ATTR {
+      const std::size_t first = i * max_thin_pixels;
+      add_thin_kernels<i + 1, C>(shape, gathered, kernels.with_keys(first, first + max_thin_pixels),
+                                 samples, counts);
+    });
+  } else {
+    constexpr std::size_t all = std::size_t{max_thin_pixels} * max_thin_pixels;
+    add_thin_kernels<max_thin_pixels, C>(shape, gathered, kernels.with_keys(0, all), samples,
+                                         counts);
+  }
 }
 
 }  // namespace HWY_NAMESPACE

@@ -194,26 +194,6 @@ HWY_INLINE Lanes read_table(LaneTag d, const Classifier& c, int i, const TablePl
                     look_up<kKind>(d, c, Classifier::base + i, place.segment));
 }
 
-/// Four floats of each lane: lane l's begin at from + offset[l]. Vector i gets the i-th.
-HWY_INLINE void load_fours(LaneTag d, const float* from, const std::int32_t* offset,
-                           std::array<Lanes, 4>& out) {
-  const hn::FixedTag<float, 4> four;
-  for (std::size_t i = 0; i < 4; ++i) {
-    const auto part = [&](std::size_t block)
-                          HWY_ATTR { return hn::Load(four, from + offset[4 * block + i]); };
-#if HWY_TARGET <= HWY_AVX3
-    const hn::Half<LaneTag> half;
-    out[i] =
-        hn::Combine(d, hn::Combine(half, part(3), part(2)), hn::Combine(half, part(1), part(0)));
-#elif HWY_TARGET <= HWY_AVX2
-    out[i] = hn::Combine(d, part(1), part(0));
-#else
-    out[i] = part(0);
-#endif
-  }
-  transpose_fours(d, out[0], out[1], out[2], out[3]);
-}
-
 /// Red, green, blue and extinction times step at a place of the table.
 HWY_INLINE std::array<Lanes, 4> read_record(LaneTag d, const Classifier& c,
                                             const TablePlace& place) {

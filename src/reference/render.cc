@@ -15,11 +15,14 @@ namespace {
 
 /// Relative to the distance from the eye for lengths, absolute for opacities.
 constexpr double stability_tolerance = 1e-5;
+/// Where kernels have come down to so little of their peak, single precision knows no direction.
+constexpr double faintest_normal = 1e-20;
 
 /// All fields' kernels, and what of the scene is the same for every ray.
 struct Volume {
   std::vector<std::vector<ParticleKernel>> fields;
   std::vector<double> smallest_radius;  ///< of each field's particles
+  std::vector<double> largest_peak;     ///< of each field's kernels
   Bounds3d box;
   Vector3d forward;
   double near = 0,
@@ -30,10 +33,12 @@ Volume make_volume(const ParticleSet& particles, const ResolvedScene& scene) {
   Volume volume;
   for (const FieldSource& source : scene.fields) {
     volume.fields.push_back(particle_kernels(particles, source));
-    double smallest = std::numeric_limits<double>::infinity();
+    double smallest = std::numeric_limits<double>::infinity(), largest = 0;
     for (const ParticleKernel& kernel : volume.fields.back()) {
       smallest = std::min(smallest, kernel.radius);
+      largest = std::max(largest, std::abs(kernel.amplitude));
     }
+    volume.largest_peak.push_back(largest);
     volume.smallest_radius.push_back(smallest);
   }
   volume.box = volume_box(volume.fields);
@@ -83,7 +88,7 @@ std::vector<ParticleKernel> kernels_near_ray(const std::vector<ParticleKernel>& 
 
 struct Pixel {
   RayColor color;
-  bool unstable = false;
+  bool unstable = false, faint = false;
   std::uint64_t samples = 0, kernel_evaluations = 0;
 };
 
@@ -125,6 +130,9 @@ Pixel render_pixel(const Volume& volume, const ResolvedScene& scene, int px, int
       pixel.kernel_evaluations += field.num_kernels;
       Classified sample = classify(scene.transfer_functions[f], field.value);
       if (lighting.enabled) {
+        if (field.absolute > 0 && field.absolute < faintest_normal * volume.largest_peak[f]) {
+          pixel.faint = true;
+        }
         sample = shade(sample, lighting, normal_of(field, volume.smallest_radius[f]), view, light);
       }
       composite(pixel.color, sample, step_length);
@@ -228,7 +236,8 @@ Image render(const ParticleSet& particles, const ResolvedScene& scene) {
   for (const Pixel& pixel : pixels) {
     const RayColor& c = pixel.color;
     image.rgba.insert(image.rgba.end(), {c.red, c.green, c.blue, c.alpha});
-    image.unstable.push_back(pixel.unstable ? 1 : 0);
+    image.unstable.push_back(pixel.unstable || pixel.faint ? 1 : 0);
+    image.faint.push_back(pixel.faint ? 1 : 0);
     image.samples += pixel.samples;
     image.kernel_evaluations += pixel.kernel_evaluations;
   }

@@ -20,8 +20,12 @@ struct Image {
   std::vector<double> rgba;  ///< linear, premultiplied, [height][width][4], rows from the top
   /// One flag a pixel, [height][width]: 1 where rounding may change the picture visibly, since a
   /// sample lies within 1e-5 of its distance from the eye to the support boundary of a selected
-  /// particle or to a face of the volume, or an opacity lies within 1e-5 of termination.
+  /// particle or to a face of the volume, or an opacity lies within 1e-5 of termination,
+  /// or it is faint.
   std::vector<unsigned char> unstable;
+  /// 1 where a lit sample's field is less than 1e-20 of its kernels' peak: whether it has a normal
+  /// depends on the smallest number.
+  std::vector<unsigned char> faint;
   std::uint64_t samples = 0;  ///< classified, up to termination, whatever the number of fields
   std::uint64_t kernel_evaluations =
       0;  ///< pairs of such a sample and a particle whose support holds it

@@ -33,7 +33,7 @@ namespace HWY_NAMESPACE {
 
 /// What the sweep of an area works with: a few MB, kept by each thread.
 struct SweepMemory {
-  GatheredKernels gathered;
+  std::vector<GatheredKernels> gathered;  ///< one a group of fields
   ThinKernels thin;
   PlaneKernels plane_kernels;
   ColumnBuffer columns;
@@ -81,6 +81,7 @@ class AreaSweep {
         counts_(counts),
         clock_(counts.stages) {
     memory.visible.resize(taken_groups * group_blocks * context.classifiers.size());
+    memory.gathered.resize(std::max<std::size_t>(memory.gathered.size(), constants_.num_groups));
   }
 
   void run(Framebuffer& image) {
@@ -154,12 +155,19 @@ class AreaSweep {
   void sweep_slab(const Slab& slab) {
     if (!find_live(slab)) return;
     const SlabFrame frame = make_slab_frame(bounds_, slab, context_.view);
-    gather_kernels(*context_.kernels, constants_, frame,
-                   make_frustum(bounds_, frame, context_.view), memory_.gathered);
+    const Frustum frustum = make_frustum(bounds_, frame, context_.view);
+    std::size_t num_gathered = 0;
+    for (std::uint32_t g = 0; g < constants_.num_groups; ++g) {
+      GatheredKernels& gathered = memory_.gathered[g];
+      gather_kernels(*context_.kernels, constants_, g, frame, frustum, gathered);
+      num_gathered += gathered.size;
+    }
     clock_.lap(Stage::traverse);
-    if (memory_.gathered.size == 0 && !integrator_.zero_shows()) return;
+    if (num_gathered == 0 && !integrator_.zero_shows()) return;
     const AreaPixels pixels = place_pixels(bounds_, image_bounds_, frame);
-    shapes_ = find_thin_kernels(pixels, frame, memory_.gathered);
+    for (std::uint32_t g = 0; g < constants_.num_groups; ++g) {
+      find_thin_kernels(pixels, frame, memory_.gathered[g]);
+    }
     clock_.lap(Stage::cull);
     memory_.buffer.reserve(layout_);
     memory_.columns.reserve(layout_);
@@ -174,31 +182,18 @@ class AreaSweep {
   /// Samples and integrates the planes of a batch, the first of which is plane `first` of the slab.
   void render_batch(const SlabFrame& frame, const AreaPixels& pixels, int first,
                     const Slab& batch) {
-    if (context_.count_inside) {
-      render_channels<Channels<false, false, true>>(frame, pixels, first, batch);
-    } else if (!context_.gradients) {
-      render_channels<Channels<false, false>>(frame, pixels, first, batch);
-    } else if (context_.absolute) {
-      render_channels<Channels<true, true>>(frame, pixels, first, batch);
-    } else {
-      render_channels<Channels<true, false>>(frame, pixels, first, batch);
-    }
-  }
-
-  template <class C>
-  void render_channels(const SlabFrame& frame, const AreaPixels& pixels, int first,
-                       const Slab& batch) {
     EvaluationCounts evaluations;
-    if (shapes_.others != 0) sum_by_planes<C>(frame, pixels, first, batch.count, evaluations);
-    if (shapes_.thin != 0) {
-      const AreaPlanes planes = place_planes(pixels, frame, first);
-      find_pixels(pixels, planes, memory_.gathered, memory_.thin);
-      clock_.lap(Stage::cull);
-      const std::size_t field_floats =
-          static_cast<std::size_t>(layout_.channels()) * std::size_t{ColumnBuffer::planes};
-      sum_columns<C>(memory_.gathered, memory_.thin, {planes, live_, field_floats, memory_.columns},
-                     evaluations);
-      clock_.lap(Stage::sums);
+    for (std::uint32_t g = 0; g < constants_.num_groups; ++g) {
+      const GatheredKernels& gathered = memory_.gathered[g];
+      const auto sum = [&](const auto& shape) {
+        sum_group(shape, gathered, frame, pixels, first, batch.count, evaluations);
+      };
+      const FieldKernels& field = *constants_.kernels[constants_.first_field[g]];
+      if (field.kernel.shape.type == KernelType::gaussian) {
+        sum(GaussianShape{});
+      } else {
+        with_shape(field, sum);
+      }
     }
     for (int row = 0; row < AreaBuffer::groups; ++row) {
       for (int column = 0; column < AreaBuffer::groups; column += taken_groups) {
@@ -210,9 +205,48 @@ class AreaSweep {
     counts_.evaluations_inside += evaluations.inside_support;
   }
 
-  /// Adds the kernels that are not thin to planes `first` to first + count - 1 of the slab.
+  /// Adds the kernels of a group of fields to planes `first` to first + count - 1 of the slab.
+  template <class Shape>
+  void sum_group(const Shape& shape, const GatheredKernels& gathered, const SlabFrame& frame,
+                 const AreaPixels& pixels, int first, int count, EvaluationCounts& evaluations) {
+    const auto sum = [&]<class C>() {
+      if (gathered.num_others != 0) {
+        sum_by_planes<C>(shape, gathered, frame, pixels, first, count, evaluations);
+      }
+      if (gathered.num_thin != 0) {
+        sum_by_columns<C>(shape, gathered, frame, pixels, first, evaluations);
+      }
+    };
+    if (context_.count_inside) {
+      sum.template operator()<Channels<false, false, Shape::is_product, Shape>>();
+    } else if (!context_.gradients) {
+      sum.template operator()<Channels<false, false, false, Shape>>();
+    } else if (context_.absolute) {
+      sum.template operator()<Channels<true, true, false, Shape>>();
+    } else {
+      sum.template operator()<Channels<true, false, false, Shape>>();
+    }
+  }
+
+  /// Those that are thin.
   template <class C>
-  void sum_by_planes(const SlabFrame& frame, const AreaPixels& pixels, int first, int count,
+  void sum_by_columns(const typename C::Shape& shape, const GatheredKernels& gathered,
+                      const SlabFrame& frame, const AreaPixels& pixels, int first,
+                      EvaluationCounts& evaluations) {
+    const AreaPlanes planes = place_planes(pixels, frame, first);
+    find_pixels(pixels, planes, gathered, memory_.thin);
+    clock_.lap(Stage::cull);
+    const std::size_t field_floats =
+        static_cast<std::size_t>(layout_.channels()) * std::size_t{ColumnBuffer::planes};
+    sum_columns<C>(shape, gathered, memory_.thin, {planes, live_, field_floats, memory_.columns},
+                   evaluations);
+    clock_.lap(Stage::sums);
+  }
+
+  /// Those that are not.
+  template <class C>
+  void sum_by_planes(const typename C::Shape& shape, const GatheredKernels& gathered,
+                     const SlabFrame& frame, const AreaPixels& pixels, int first, int count,
                      EvaluationCounts& evaluations) {
     std::array<AreaPlane, AreaBuffer::planes> planes;
     for (int k = 0; k < count;) {
@@ -220,11 +254,11 @@ class AreaSweep {
       for (; k < count && memory_.plane_kernels.size() < kernels_at_once; ++k) {
         AreaPlane& plane = planes[static_cast<std::size_t>(k)];
         plane = place_plane(pixels, frame, first + k);
-        find_boxes(memory_.gathered, plane, k, memory_.plane_kernels);
+        find_boxes(gathered, plane, k, memory_.plane_kernels);
       }
       memory_.plane_kernels.sort();
       clock_.lap(Stage::cull);
-      sum_planes<C>(memory_.gathered, memory_.plane_kernels,
+      sum_planes<C>(shape, gathered, memory_.plane_kernels,
                     {planes.data(), memory_.buffer, field_floats_, live_}, evaluations);
       clock_.lap(Stage::sums);
     }
@@ -367,7 +401,6 @@ class AreaSweep {
   TileCounts& counts_;
   StageClock clock_;
   LiveGroups live_;                   ///< groups with rays under way
-  ShapeCounts shapes_;                ///< of the slab's kernels
   SampleIndex begin_ = 0, end_ = -1;  ///< of all rays
 };
 

@@ -147,7 +147,7 @@ TreeUpdate Renderer::set_particles(const ParticleSet& particles,
 
 void Renderer::set_kernel(std::size_t field, const Kernel& kernel) {
   assert(field < kernels_.fields.size());
-  kernels_.fields[field].kernel = kernel;
+  kernels_.fields[field].set_kernel(kernel);
 }
 
 Framebuffer Renderer::render(const ResolvedScene& scene, const RenderOptions& options,

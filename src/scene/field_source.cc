@@ -171,6 +171,7 @@ FieldSource select_source(const ParticleSet& particles, const Field& field, cons
   source.name = field.name;
   source.kernel.support_factor = field.support_factor.value_or(kernel.support_factor);
   source.kernel.kernel_scale = field.kernel_scale.value_or(kernel.kernel_scale);
+  source.kernel.shape = field.kernel_shape.value_or(kernel.shape);
   source.index = select_particles(particles, field.select);
   if (source.index.empty()) {
     throw Error(fmt::format("field '{}' selects none of the {} particles{}", printable(field.name),
@@ -195,6 +196,17 @@ std::vector<float> shared_default_radii(const ParticleSet& particles,
   return default_radii(particles, warnings, wanted, progress).radius;
 }
 
+/// Turns default radii, which are standard deviations, into those of the source's kernel. A table's
+/// distances are lengths by themselves.
+void take_as_widths(FieldSource& source) {
+  if (source.kernel.shape.type == KernelType::tabulated) {
+    source.radius = {1};
+    return;
+  }
+  const auto factor = static_cast<float>(1 / source.kernel.standard_deviation());
+  for (float& radius : source.radius) radius *= factor;
+}
+
 /// Adds radii and weights to a selected source, and leaves out the particles without a kernel.
 void complete_source(const ParticleSet& particles, const Field& field,
                      const std::vector<float>& default_radius, FieldSource& source,
@@ -208,6 +220,11 @@ void complete_source(const ParticleSet& particles, const Field& field,
   const NumberOrProperty unit = of_mass ? NumberOrProperty("mass") : NumberOrProperty(1.0);
   const std::vector<float> weight = values_of(particles, field.weight.value_or(unit), "weight");
   source.normalise = field.normalise.value_or(density);
+  if (source.normalise && !(source.kernel.integral() > 0)) {
+    throw Error(fmt::format(
+        "field '{}': its table integrates to {:g} and cannot be normalised; expected more than 0",
+        printable(field.name), source.kernel.integral()));
+  }
 
   Filter filter(field, source.index, warnings);
   filter.require(
@@ -232,6 +249,7 @@ void complete_source(const ParticleSet& particles, const Field& field,
   }
 
   source.radius = gather(radius, source.index);
+  if (!field.radius) take_as_widths(source);
   source.weight = gather(weight, source.index);
   source.species_color = species_color(particles, source.index);
 }

@@ -40,11 +40,12 @@ double quantile(std::vector<float>& values, double fraction) {
 /// Relative luminance of linear RGB (ITU-R BT.709).
 double luminance(const Color& c) { return 0.2126 * c.r + 0.7152 * c.g + 0.0722 * c.b; }
 
-/// Calls `look` with radii of the field's particles: all, or evenly many.
+/// Calls `look` with widths of the field's particles: all, or evenly many.
 template <class F>
 void for_some_radii(const FieldSource& field, F&& look) {
   const std::size_t stride = 1 + field.index.size() / radii_looked_at;
-  for (std::size_t i = 0; i < field.index.size(); i += stride) look(field.radius_of(i));
+  for (std::size_t i = 0; i < field.index.size(); i += stride)
+    look(static_cast<float>(field.width_of(i)));
 }
 
 struct Range {

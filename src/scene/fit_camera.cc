@@ -96,11 +96,12 @@ std::vector<VisibleSphere> visible_spheres(const ParticleSet& particles,
   std::vector<VisibleSphere> spheres;
   std::mt19937 random(1);  // evenly many would beat with a lattice
   for (const FieldSource& field : fields) {
-    const double extent = std::min(field.kernel.support_factor, easily_seen);
+    const double widths = field.kernel.support() / field.kernel.standard_deviation();
+    const double extent = std::min(widths, easily_seen);
     const std::size_t stride = 1 + field.index.size() / particles_looked_at;
     for (std::size_t begin = 0; begin < field.index.size(); begin += stride) {
       const std::size_t i = std::min(begin + random() % stride, field.index.size() - 1);
-      spheres.push_back({particles.position(field.index[i]), extent * field.radius_of(i)});
+      spheres.push_back({particles.position(field.index[i]), extent * field.width_of(i)});
     }
   }
   std::vector<double> radii(spheres.size());

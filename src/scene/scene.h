@@ -17,17 +17,10 @@
 #include "core/report.h"
 #include "particles/particle_set.h"
 #include "scene/camera.h"
+#include "scene/kernel.h"
 #include "scene/transfer_function.h"
 
 namespace motes {
-
-/// Gaussian kernel: phi(d) = kernel_scale * weight * exp(-d^2 / (2 radius^2)) where
-/// d <= support_factor * radius, else 0 (Knoll et al. 2014, Eq. 2).
-struct Kernel {
-  double support_factor = 2;  ///< sigma, > 0
-  double kernel_scale = 1;    ///< kappa
-  bool operator==(const Kernel&) const = default;
-};
 
 /// Which particles a field takes; all that is given must hold.
 struct Selection {
@@ -63,7 +56,9 @@ struct Field {
   std::optional<NumberOrProperty> weight;  ///< nullopt: 1, or what the data suggest
   /// Divide by the truncated kernel's integral; nullopt: as the data suggest.
   std::optional<bool> normalise;
-  std::optional<double> support_factor, kernel_scale;  ///< nullopt: the scene's kernel
+  // nullopt: the scene's kernel.
+  std::optional<double> support_factor, kernel_scale;
+  std::optional<KernelShape> kernel_shape;
   std::variant<std::monostate, TransferFunction, NamedTransferFunction> transfer_function;
   bool operator==(const Field&) const = default;
 };
@@ -111,12 +106,15 @@ struct FieldSource {
   Kernel kernel;
   bool normalise = false;
   std::vector<std::uint32_t> index;  ///< into the ParticleSet, increasing
-  /// Standard deviations, file's length unit; one an index, or one for all.
+  /// What the kernel's shape takes, of Gaussians standard deviations; file's length unit; one an
+  /// index, or one for all.
   std::vector<float> radius;
   std::vector<float> weight;  ///< one an index, or one for all
   Color species_color;        ///< display colour of the species that most of its particles are
 
   float radius_of(std::size_t i) const { return radius[radius.size() == 1 ? 0 : i]; }
+  /// Standard deviation of the kernel's shape: how wide the particle looks.
+  double width_of(std::size_t i) const { return kernel.standard_deviation() * radius_of(i); }
   float weight_of(std::size_t i) const { return weight[weight.size() == 1 ? 0 : i]; }
 };
 
@@ -157,12 +155,12 @@ void color_by_species(Scene& scene, const ParticleSet& particles);
 /// properties that the particles do not have.
 std::vector<Field> expand_fields(const Scene& scene, const ParticleSet& particles);
 
-/// The particles, radii and weights of each field. `kernel` is the scene's. Defaults: radius is the
-/// particles' own size (has_sizes()), else the species' covalent radii, else half the mean distance
-/// of neighbours; weight 1. Where the field gives neither and the particles have sizes of their
-/// own, `normalise` is on and the weight is "mass" if there is one: a density of mass or number.
-/// Reports `progress` where neighbours have to be found. Throws Error for unknown properties and
-/// where no particle is left.
+/// The particles, radii and weights of each field. `kernel` is the scene's. Defaults: radius is
+/// such that the kernel's standard deviation is the particles' own size (has_sizes()), else the
+/// species' covalent radii, else half the mean distance of neighbours, but 1 for a table; weight 1.
+/// Where the field gives neither and the particles have sizes of their own, `normalise` is on and
+/// the weight is "mass" if there is one: a density of mass or number. Reports `progress` where
+/// neighbours have to be found. Throws Error for unknown properties and where no particle is left.
 std::vector<FieldSource> make_field_sources(const ParticleSet& particles,
                                             const std::vector<Field>& fields, const Kernel& kernel,
                                             Warnings& warnings, Progress* progress = nullptr);

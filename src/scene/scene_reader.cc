@@ -139,16 +139,53 @@ NumberOrProperty read_number_or_property(const Value& value, bool positive) {
   return number;
 }
 
-void read_support(const Value& value, std::optional<double>& support_factor,
-                  std::optional<double>& kernel_scale) {
-  value.with("support_factor", [&](const Value& v) { support_factor = v.number_above(0); });
-  value.with("kernel_scale", [&](const Value& v) { kernel_scale = v.number(); });
-  value.with("type", [](const Value& v) {
-    if (v.text("\"gaussian\"") != "gaussian") v.expected("\"gaussian\"");
-  });
+/// What a "kernel" says.
+struct KernelChoice {
+  std::optional<double> support_factor, kernel_scale;
+  std::optional<KernelShape> shape;
+};
+
+KernelShape read_shape(const Value& value, const std::filesystem::path& directory) {
+  KernelShape shape;
+  const Value type = value.at("type");
+  try {
+    shape.type = kernel_type_from_name(type.text("the name of a kernel"));
+  } catch (const Error& error) {
+    type.fail(error.what());
+  }
+  if (shape.type != KernelType::tabulated) return shape;
+  const Value path = value.at("path");
+  try {
+    shape.profile =
+        read_radial_profile((directory / path.text("the path of a table")).lexically_normal());
+  } catch (const Error& error) {
+    path.fail(error.what());
+  }
+  return shape;
 }
 
-Field read_field(const Value& value) {
+[[noreturn]] void fail_support_factor(const Value& kernel) {
+  kernel.at("support_factor")
+      .fail("only a gaussian has one: other kernels end where their definition says");
+}
+
+KernelChoice read_kernel(const Value& value, const std::filesystem::path& directory) {
+  value.check_keys({"type", "support_factor", "kernel_scale", "path"});
+  KernelChoice kernel;
+  value.with("support_factor", [&](const Value& v) { kernel.support_factor = v.number_above(0); });
+  value.with("kernel_scale", [&](const Value& v) { kernel.kernel_scale = v.number(); });
+  if (value.has("type")) kernel.shape = read_shape(value, directory);
+  const KernelType type = kernel.shape.value_or(KernelShape{}).type;
+  if (kernel.support_factor && type != KernelType::gaussian) {
+    fail_support_factor(value);
+  }
+  if (value.has("path") && type != KernelType::tabulated) {
+    value.at("path").fail("expected none, or \"type\": \"tabulated\"");
+  }
+  return kernel;
+}
+
+Field read_field(const Value& value, const std::filesystem::path& directory) {
   value.check_keys(
       {"name", "select", "radius", "weight", "normalise", "kernel", "transfer_function"});
   Field field;
@@ -158,22 +195,24 @@ Field read_field(const Value& value) {
   value.with("weight", [&](const Value& v) { field.weight = read_number_or_property(v, false); });
   value.with("normalise", [&](const Value& v) { field.normalise = v.boolean(); });
   value.with("kernel", [&](const Value& v) {
-    v.check_keys({"type", "support_factor", "kernel_scale"});
-    read_support(v, field.support_factor, field.kernel_scale);
+    const KernelChoice kernel = read_kernel(v, directory);
+    field.support_factor = kernel.support_factor;
+    field.kernel_scale = kernel.kernel_scale;
+    field.kernel_shape = kernel.shape;
   });
   value.with("transfer_function",
              [&](const Value& v) { field.transfer_function = read_transfer_function(v); });
   return field;
 }
 
-void read_fields(const Value& value, Scene& scene) {
+void read_fields(const Value& value, const std::filesystem::path& directory, Scene& scene) {
   const auto items = value.array("an array of fields");
   if (items.size() > max_fields) {
     value.expected(fmt::format("an array of at most {} fields", max_fields));
   }
   std::set<std::string> names;
   for (const Value& item : items) {
-    scene.fields.push_back(read_field(item));
+    scene.fields.push_back(read_field(item, directory));
     const std::string& name = scene.fields.back().name;
     if (!name.empty() && !names.insert(name).second) {
       item.at("name").expected("a name that no other field has");
@@ -227,14 +266,6 @@ void read_camera(const Value& value, Scene& scene) {
   }
 }
 
-void read_kernel(const Value& value, Scene& scene) {
-  value.check_keys({"type", "support_factor", "kernel_scale"});
-  std::optional<double> support_factor, kernel_scale;
-  read_support(value, support_factor, kernel_scale);
-  scene.kernel.support_factor = support_factor.value_or(scene.kernel.support_factor);
-  scene.kernel.kernel_scale = kernel_scale.value_or(scene.kernel.kernel_scale);
-}
-
 Lighting read_lighting(const Value& value) {
   if (value.raw().is_boolean()) {
     value.expected(fmt::format("an object such as {{\"enabled\": {}}}", value.boolean()));
@@ -284,6 +315,17 @@ void read_render(const Value& value, RenderSettings& render) {
   });
 }
 
+/// Fields whose kernel is the scene's may say where it ends only if it is a Gaussian.
+void check_support_factors(const Value& fields, const Scene& scene) {
+  if (scene.kernel.shape.type == KernelType::gaussian) return;
+  const auto items = fields.array("an array of fields");
+  for (std::size_t f = 0; f < items.size(); ++f) {
+    if (scene.fields[f].support_factor && !scene.fields[f].kernel_shape) {
+      fail_support_factor(items[f].at("kernel"));
+    }
+  }
+}
+
 Scene read_root(const json& root, const std::filesystem::path& directory) {
   const Value value(root, "");
   value.check_keys({"version", "data", "camera", "kernel", "fields", "render"});
@@ -292,8 +334,16 @@ Scene read_root(const json& root, const std::filesystem::path& directory) {
   Scene scene;
   read_data(value.at("data"), directory, scene);
   value.with("camera", [&](const Value& v) { read_camera(v, scene); });
-  value.with("kernel", [&](const Value& v) { read_kernel(v, scene); });
-  value.with("fields", [&](const Value& v) { read_fields(v, scene); });
+  value.with("kernel", [&](const Value& v) {
+    KernelChoice kernel = read_kernel(v, directory);
+    scene.kernel.support_factor = kernel.support_factor.value_or(scene.kernel.support_factor);
+    scene.kernel.kernel_scale = kernel.kernel_scale.value_or(scene.kernel.kernel_scale);
+    scene.kernel.shape = std::move(kernel.shape).value_or(KernelShape{});
+  });
+  value.with("fields", [&](const Value& v) {
+    read_fields(v, directory, scene);
+    check_support_factors(v, scene);
+  });
   value.with("render", [&](const Value& v) { read_render(v, scene.render); });
   return scene;
 }

@@ -61,13 +61,29 @@ json to_json(const Selection& select) {
   return out;
 }
 
-json to_json(const Field& field) {
+/// `path` as it is found from `directory`.
+std::string path_to_text(const std::filesystem::path& path,
+                         const std::filesystem::path& directory) {
+  const std::filesystem::path relative = path.lexically_relative(directory);
+  return (relative.empty() ? std::filesystem::absolute(path) : relative).string();
+}
+
+json to_json(const KernelShape& shape, const std::filesystem::path& directory) {
+  json out{{"type", name_of(shape.type)}};
+  if (shape.type == KernelType::tabulated) {
+    out["path"] = path_to_text(shape.profile.path, directory);
+  }
+  return out;
+}
+
+json to_json(const Field& field, const std::filesystem::path& directory) {
   json out = json::object();
   if (!field.name.empty()) out["name"] = field.name;
   if (field.select != Selection{}) out["select"] = to_json(field.select);
   if (field.radius) out["radius"] = number_or_property_to_json(*field.radius);
   if (field.weight) out["weight"] = number_or_property_to_json(*field.weight);
   if (field.normalise) out["normalise"] = *field.normalise;
+  if (field.kernel_shape) out["kernel"] = to_json(*field.kernel_shape, directory);
   if (field.support_factor) out["kernel"]["support_factor"] = *field.support_factor;
   if (field.kernel_scale) out["kernel"]["kernel_scale"] = *field.kernel_scale;
   if (!std::holds_alternative<std::monostate>(field.transfer_function)) {
@@ -96,10 +112,7 @@ json to_json(const RenderSettings& render) {
 }
 
 json data_to_json(const Scene& scene, const std::filesystem::path& directory) {
-  namespace fs = std::filesystem;
-  const fs::path relative = scene.data_path.lexically_relative(directory);
-  json out{{"path", (relative.empty() ? fs::absolute(scene.data_path) : relative).string()},
-           {"frame", scene.frame}};
+  json out{{"path", path_to_text(scene.data_path, directory)}, {"frame", scene.frame}};
   for (const auto& [number, name] : scene.types) out["types"][std::to_string(number)] = name;
   return out;
 }
@@ -153,12 +166,14 @@ std::string scene_to_json(const Scene& scene, const std::filesystem::path& direc
   json root{{"version", 1}, {"data", data_to_json(scene, directory)}};
   const json camera = camera_to_json(scene);
   if (!camera.empty()) root["camera"] = camera;
-  root["kernel"] = {{"type", "gaussian"},
-                    {"support_factor", scene.kernel.support_factor},
-                    {"kernel_scale", scene.kernel.kernel_scale}};
+  root["kernel"] = to_json(scene.kernel.shape, directory);
+  if (scene.kernel.shape.type == KernelType::gaussian) {
+    root["kernel"]["support_factor"] = scene.kernel.support_factor;
+  }
+  root["kernel"]["kernel_scale"] = scene.kernel.kernel_scale;
   if (!scene.fields.empty()) {
     root["fields"] = json::array();
-    for (const Field& field : scene.fields) root["fields"].push_back(to_json(field));
+    for (const Field& field : scene.fields) root["fields"].push_back(to_json(field, directory));
   }
   root["render"] = to_json(scene.render);
   try {

@@ -51,12 +51,12 @@ class Comparison {
         EXPECT_EQ(statistics.samples, truth.samples) << where;
         EXPECT_GE(statistics.kernel_evaluations, truth.kernel_evaluations) << where;
       }
-      const double rms = compare_images(image, expected).rms;
+      const double rms = compare_images(image, expected, truth.faint).rms;
       mean_squares_ += rms * rms * static_cast<double>(expected.num_pixels());
     }
   }
 
-  /// Over all pixels, the unstable ones included.
+  /// Over all pixels, the unstable ones included, but not the faint ones.
   double rms() const {
     const auto pictures = static_cast<double>(all_ways().size());
     return std::sqrt(mean_squares_ / (pictures * static_cast<double>(pixels_)));

@@ -24,7 +24,10 @@ constexpr int width = 45, height = 31;
 /// The reference at the only sample of a pixel.
 struct Sample {
   reference::FieldValue field;
-  double absolute_slope = 0;  ///< sum of |phi_i| |x - x_i| / r_i^2
+  double absolute_slope = 0;  ///< sum of |grad phi_i|
+  // Sums of peaks, and of peaks over radii, of kernels that end smoothly: close to their ends they
+  // are small differences of such numbers, good to some units of their last place.
+  double peaks = 0, steepest = 0;
 };
 
 /// One field of a random scene with a step so large that the first plane passes through the data
@@ -62,6 +65,9 @@ class OnePlane {
     for (const reference::ParticleKernel& kernel : kernels_) {
       const reference::FieldValue one = reference::evaluate_field({kernel}, x);
       s.absolute_slope += length(one.gradient);
+      if (one.num_kernels == 0 || kernel.shape->type == KernelType::gaussian) continue;
+      s.peaks += std::abs(kernel.amplitude);
+      s.steepest += std::abs(kernel.amplitude) / kernel.radius;
     }
     return s;
   }
@@ -116,7 +122,8 @@ TEST(EngineSamples, ValuesAreThoseOfTheReference) {
         if (!sample) continue;
         const double value = range * (2. * image.pixel(i % width, i / width)[0] - 1);
         // A few roundings of the picture itself, besides those of the field.
-        ASSERT_NEAR(value, sample->field.value, 1e-5 * sample->field.absolute + 5e-7 * range)
+        ASSERT_NEAR(value, sample->field.value,
+                    1e-5 * sample->field.absolute + 3e-6 * sample->peaks + 5e-7 * range)
             << random.description << "\n"
             << way.name() << ", pixel " << i % width << ", " << i / width;
         checked += sample->field.num_kernels > 0 ? 1 : 0;
@@ -149,7 +156,8 @@ TEST(EngineSamples, NormalsAreThoseOfTheReference) {
           const auto& sample = expected[static_cast<std::size_t>(i)];
           if (!sample || sample->field.num_kernels == 0) continue;
           const double steepness = length(sample->field.gradient);
-          const double error = 1e-5 * sample->absolute_slope / steepness;
+          const double error =
+              (1e-5 * sample->absolute_slope + 2e-6 * sample->steepest) / steepness;
           if (error > 1e-2) continue;  // kernels cancel, and little is left that could be compared
           ASSERT_NEAR(image.pixel(i % width, i / width)[0],
                       std::abs(sample->field.gradient[axis]) / steepness, 2 * error + 1e-6)

@@ -82,6 +82,36 @@ TEST(MakeFieldSources, DefaultsToCovalentRadiiAndWeightOne) {
   EXPECT_THAT(warnings.lines(), testing::IsEmpty());
 }
 
+TEST(MakeFieldSources, DefaultRadiiGiveAllKernelsTheSameWidth) {
+  Warnings warnings;
+  const FieldSource gaussian = make_field_source(silica(), {}, {}, warnings);
+  Field field;
+  field.kernel_shape = KernelShape{KernelType::cubic_spline, {}};
+  const FieldSource spline = make_field_source(silica(), field, {}, warnings);
+  ASSERT_EQ(spline.radius.size(), gaussian.radius.size());
+  for (std::size_t i = 0; i < spline.radius.size(); ++i) {
+    // H = 2 h = 3.651 sigma (Dehnen & Aly 2012).
+    EXPECT_NEAR(spline.radius[i], 3.651484f / 2 * gaussian.radius[i], 1e-5f);
+    EXPECT_NEAR(spline.width_of(i), gaussian.width_of(i), 1e-5);
+  }
+  field.radius = 3.0;
+  EXPECT_THAT(make_field_source(silica(), field, {}, warnings).radius, ElementsAre(3));
+  field = {};
+  field.kernel_shape = KernelShape{KernelType::tabulated, {"", 0.5, {1, 0.5, 0}}};
+  EXPECT_THAT(make_field_source(silica(), field, {}, warnings).radius, ElementsAre(1));
+}
+
+TEST(MakeFieldSources, RefusesToNormaliseWhatHasNoIntegral) {
+  Warnings warnings;
+  Field field;
+  field.name = "dipoles";
+  field.normalise = true;
+  field.kernel_shape = KernelShape{KernelType::tabulated, {"", 1, {0, 0}}};
+  EXPECT_EQ(
+      message_of([&] { make_field_source(silica(), field, {}, warnings); }),
+      "field 'dipoles': its table integrates to 0 and cannot be normalised; expected more than 0");
+}
+
 TEST(MakeFieldSources, TakesNumbersAndProperties) {
   Warnings warnings;
   Field field;

@@ -163,7 +163,17 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{R"("camera": {"fov": 30, "orthographic": 10})", "camera: expected either"},
         Refusal{R"("camera": {"orthographic": 0})", "camera.orthographic: expected a number gr"},
         Refusal{R"("camera": {"eye": [1, 2, 3], "target": [1, 2, 3]})", "camera: expected two"},
-        Refusal{R"("kernel": {"type": "m4"})", "kernel.type: expected \"gaussian\""},
+        Refusal{R"("kernel": {"type": "m4"})",
+                "kernel.type: unknown kernel 'm4'; there are: gaussian, cubic_spline"},
+        Refusal{R"("kernel": {"type": "cubic_spline", "support_factor": 3})",
+                "kernel.support_factor: only a gaussian has one"},
+        Refusal{
+            R"("kernel": {"type": "wendland_c2"}, "fields": [{"kernel": {"support_factor": 3}}])",
+            "fields[0].kernel.support_factor: only a gaussian has one"},
+        Refusal{R"("kernel": {"type": "tabulated"})", "kernel: expected the key 'path'"},
+        Refusal{R"("kernel": {"path": "a.txt"})", "kernel.path: expected none"},
+        Refusal{R"("kernel": {"type": "tabulated", "path": "/none.txt"})",
+                "kernel.path: /none.txt: there is no such file"},
         Refusal{R"("kernel": {"support_factor": 0})", "kernel.support_factor: expected a number"},
         Refusal{R"("kernel": 3)", "kernel: expected an object, found 3"},
         Refusal{R"("fields": {})", "fields: expected an array of fields, found an object"},
@@ -302,6 +312,8 @@ Field random_field(int number) {
   field.normalise = maybe([] { return *rc::gen::arbitrary<bool>(); });
   field.support_factor = maybe([] { return random_double(1, 30); });
   field.kernel_scale = maybe([] { return random_double(-30, 30); });
+  field.kernel_shape = maybe([] { return KernelShape{KernelType::quintic_spline, {}}; });
+  if (field.kernel_shape) field.support_factor.reset();
   field.transfer_function = random_transfer_function();
   return field;
 }
@@ -319,8 +331,12 @@ RC_GTEST_PROP(SceneToJson, ReadsBackEqual, ()) {
   } else {
     scene.orthographic_height = maybe([] { return random_double(1, 999); });
   }
-  scene.kernel = {random_double(1, 30), random_double(-30, 30)};
   for (int n = *rc::gen::inRange(0, 4); n > 0; --n) scene.fields.push_back(random_field(n));
+  scene.kernel = {random_double(1, 30), random_double(-30, 30)};
+  if (*rc::gen::arbitrary<bool>()) {
+    scene.kernel = {.kernel_scale = 3, .shape = {KernelType::wendland_c4, {}}};
+    for (Field& field : scene.fields) field.support_factor.reset();
+  }
   scene.render.width = *rc::gen::inRange(1, 16385);
   scene.render.step_size = maybe([] { return random_double(1, 30); });
   scene.render.termination_opacity = random_double(1, 8);

@@ -75,13 +75,32 @@ ParticleSet draw_particles(Draw& draw, const Extent& extent, int num_particles) 
   return particles_at(points);
 }
 
+/// Mostly Gaussians; tables with a step at their end, and with values of both signs.
+KernelShape draw_shape(Draw& draw) {
+  KernelShape shape;
+  if (draw.chance(0.6)) return shape;
+  shape.type = static_cast<KernelType>(1 + draw.below(6));
+  if (shape.type != KernelType::tabulated) return shape;
+  const int num_points = 2 + draw.below(9);
+  const bool negative = draw.chance(0.3), ends = draw.chance(0.5);
+  shape.profile.spacing = draw.uniform(1.5, 3) / num_points;
+  for (int i = 0; i < num_points; ++i) {
+    const double left = 1 - static_cast<double>(i) / (num_points - 1);
+    const double value = draw.uniform(negative ? -0.5 : 0.5, 1) * (ends ? left : 0.1 + left);
+    shape.profile.values.push_back(value);
+  }
+  return shape;
+}
+
 FieldSource draw_field(Draw& draw, const Extent& extent, int num_particles, int field,
                        int num_fields, bool disjoint, double weight_scale) {
   FieldSource source;
   source.name = fmt::format("field{}", field);
   source.kernel.support_factor = draw.chance(0.4) ? 2 : draw.uniform(1, 4);
   source.kernel.kernel_scale = draw.chance(0.5) ? 1 : draw.log_uniform(0.1, 10);
-  source.normalise = draw.chance(0.3);
+  source.kernel.shape = draw_shape(draw);
+  // A table of both signs may have no integral to speak of.
+  source.normalise = source.kernel.shape.type != KernelType::tabulated && draw.chance(0.3);
   const double share = draw.uniform(0.2, 1);
   for (int i = 0; i < num_particles; ++i) {
     const bool taken = disjoint ? i % num_fields == field : draw.chance(share);
@@ -217,7 +236,7 @@ RandomScene random_scene(std::uint32_t seed) {
     scene.transfer_functions.push_back(
         draw_transfer_function(draw, typical, extent.size * draw.uniform(0.5, 2)));
     const float radius = *std::min_element(source.radius.begin(), source.radius.end());
-    smallest_support = std::min(smallest_support, radius * source.kernel.support_factor);
+    smallest_support = std::min(smallest_support, radius * source.kernel.support());
     scene.fields.push_back(std::move(source));
   }
 

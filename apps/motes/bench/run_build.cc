@@ -43,7 +43,7 @@ UninitializedVector<Sphere> gather_supports(const ParticleSet& particles,
   UninitializedVector<Sphere> supports;
   supports.reserve(count);
   for (const FieldSource& source : sources) {
-    const auto sigma = static_cast<float>(source.kernel.support_factor);
+    const auto sigma = static_cast<float>(source.kernel.support());
     for (std::size_t i = 0; i < source.index.size(); ++i) {
       const std::uint32_t p = source.index[i];
       supports.push_back(

@@ -1,0 +1,261 @@
+// The kernels' shapes for a vector of distances. Included once per instruction set.
+//
+// A shape takes the squared distance in units that suit it: the squared distance in lengths times
+// distance_scale, which is that of a kernel of radius 1 over the squared radius.
+#if defined(MOTES_FIELD_SHAPES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef MOTES_FIELD_SHAPES_INL_H_
+#undef MOTES_FIELD_SHAPES_INL_H_
+#else
+#define MOTES_FIELD_SHAPES_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <array>
+#include <cstdint>
+#include <numbers>
+
+#include "field/kernel_set.h"
+#include "field/radial_table.h"
+#include "field/sampling-inl.h"
+#include "samples/lanes-inl.h"
+#include "samples/transpose-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace motes {
+namespace HWY_NAMESPACE {
+
+/// phi at q, of peak 1, and -(d phi / d q) / q: the gradient is steepness times -(x - x_i) / r^2.
+template <class V>
+struct RadialLanes {
+  V value, steepness;
+};
+
+/// A shape of which the samples of a column and a row are products: the squared distance is the
+/// base-2 exponent.
+struct GaussianShape {
+  static constexpr bool is_product = true;
+  static constexpr float distance_scale = -0.5f * std::numbers::log2e_v<float>;
+  float threshold;  ///< exponent at the support radius
+
+  template <bool kSteepness, class D, class V = hn::Vec<D>>
+  HWY_INLINE RadialLanes<V> at(D d, V exponent) const {
+    const auto inside = hn::Ge(exponent, hn::Set(d, threshold));
+    const V value = hn::IfThenElseZero(inside, exp2_bounded(d, exponent));
+    return {value, value};
+  }
+};
+
+/// 1 / sqrt(x), relative error below 3e-7; finite where x is 0.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V inverse_sqrt(D d, V x) {
+  const V bounded = hn::Max(x, hn::Set(d, 1e-30f));
+  const V y = hn::ApproximateReciprocalSqrt(bounded);
+  const V half_y = hn::Mul(hn::Set(d, 0.5f), y);
+  return hn::MulAdd(half_y, hn::NegMulAdd(hn::Mul(bounded, y), y, hn::Set(d, 1.0f)), y);
+}
+
+/// max(reach - q, 0).
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V below(D d, float reach, V q) {
+  return hn::Max(hn::Sub(hn::Set(d, reach), q), hn::Zero(d));
+}
+
+// What all others have in common: they are functions of q^2, and where their support ends they come
+// to zero by themselves.
+struct SumShape {
+  static constexpr bool is_product = false;
+  static constexpr float distance_scale = 1;
+};
+
+struct CubicSplineShape : SumShape {
+  template <bool kSteepness, class D, class V = hn::Vec<D>>
+  HWY_INLINE RadialLanes<V> at(D d, V q_sq) const {
+    const V inverse = inverse_sqrt(d, q_sq), q = hn::Mul(q_sq, inverse);
+    const V outer = below(d, 2, q), inner = below(d, 1, q);
+    const V outer_sq = hn::Mul(hn::Set(d, 0.25f), hn::Mul(outer, outer));
+    const V inner_sq = hn::Mul(inner, inner);
+    RadialLanes<V> phi{hn::NegMulAdd(inner_sq, inner, hn::Mul(outer_sq, outer)), outer};
+    if constexpr (kSteepness) {
+      phi.steepness = hn::Mul(hn::Mul(hn::Set(d, 3.0f), hn::Sub(outer_sq, inner_sq)), inverse);
+    }
+    return phi;
+  }
+};
+
+struct QuinticSplineShape : SumShape {
+  template <bool kSteepness, class D, class V = hn::Vec<D>>
+  HWY_INLINE RadialLanes<V> at(D d, V q_sq) const {
+    const V inverse = inverse_sqrt(d, q_sq), q = hn::Mul(q_sq, inverse);
+    const V outer = below(d, 3, q), middle = below(d, 2, q), inner = below(d, 1, q);
+    const auto fourth = [&](float factor, V x) HWY_ATTR {
+      const V x_sq = hn::Mul(x, x);
+      return hn::Mul(hn::Set(d, factor), hn::Mul(x_sq, x_sq));
+    };
+    const V outer_4 = fourth(1.0f / 66, outer), middle_4 = fourth(6.0f / 66, middle);
+    const V inner_4 = fourth(15.0f / 66, inner);
+    const V outer_5 = hn::Mul(outer_4, outer);
+    RadialLanes<V> phi{hn::MulAdd(inner_4, inner, hn::NegMulAdd(middle_4, middle, outer_5)), outer};
+    if constexpr (kSteepness) {
+      const V sum = hn::Add(hn::Sub(outer_4, middle_4), inner_4);
+      phi.steepness = hn::Mul(hn::Mul(hn::Set(d, 5.0f), sum), inverse);
+    }
+    return phi;
+  }
+};
+
+struct WendlandC2Shape : SumShape {
+  template <bool kSteepness, class D, class V = hn::Vec<D>>
+  HWY_INLINE RadialLanes<V> at(D d, V q_sq) const {
+    const V q = hn::Mul(q_sq, inverse_sqrt(d, q_sq));
+    const V t = hn::Max(hn::NegMulAdd(hn::Set(d, 0.5f), q, hn::Set(d, 1.0f)), hn::Zero(d));
+    const V t_3 = hn::Mul(hn::Mul(t, t), t);
+    const V value = hn::Mul(hn::Mul(t_3, t), hn::MulAdd(hn::Set(d, 2.0f), q, hn::Set(d, 1.0f)));
+    return {value, hn::Mul(hn::Set(d, 5.0f), t_3)};
+  }
+};
+
+struct WendlandC4Shape : SumShape {
+  template <bool kSteepness, class D, class V = hn::Vec<D>>
+  HWY_INLINE RadialLanes<V> at(D d, V q_sq) const {
+    const V one = hn::Set(d, 1.0f);
+    const V q = hn::Mul(q_sq, inverse_sqrt(d, q_sq));
+    const V t = hn::Max(hn::NegMulAdd(hn::Set(d, 0.5f), q, one), hn::Zero(d));
+    const V t_2 = hn::Mul(t, t), t_5 = hn::Mul(hn::Mul(t_2, t_2), t);
+    const V polynomial =
+        hn::MulAdd(q, hn::MulAdd(q, hn::Set(d, 35.0f / 12), hn::Set(d, 3.0f)), one);
+    const V steepness = hn::Mul(t_5, hn::MulAdd(q, hn::Set(d, 35.0f / 3), hn::Set(d, 14.0f / 3)));
+    return {hn::Mul(hn::Mul(t_5, t), polynomial), steepness};
+  }
+};
+
+struct WendlandC6Shape : SumShape {
+  template <bool kSteepness, class D, class V = hn::Vec<D>>
+  HWY_INLINE RadialLanes<V> at(D d, V q_sq) const {
+    const V one = hn::Set(d, 1.0f);
+    const V q = hn::Mul(q_sq, inverse_sqrt(d, q_sq));
+    const V t = hn::Max(hn::NegMulAdd(hn::Set(d, 0.5f), q, one), hn::Zero(d));
+    const V t_2 = hn::Mul(t, t), t_4 = hn::Mul(t_2, t_2), t_7 = hn::Mul(hn::Mul(t_4, t_2), t);
+    V polynomial = hn::MulAdd(q, hn::Set(d, 4.0f), hn::Set(d, 6.25f));
+    polynomial = hn::MulAdd(q, hn::MulAdd(q, polynomial, hn::Set(d, 4.0f)), one);
+    V steepness = hn::MulAdd(q, hn::Set(d, 22.0f), hn::Set(d, 19.25f));
+    steepness = hn::Mul(t_7, hn::MulAdd(q, steepness, hn::Set(d, 5.5f)));
+    return {hn::Mul(hn::Mul(t_7, t), polynomial), steepness};
+  }
+};
+
+/// Where in a table some distances are: the numbers of their segments and the places within them.
+template <class D, class V = hn::Vec<D>>
+struct TablePlaces {
+  hn::Vec<hn::RebindToSigned<D>> segment;
+  V t, inverse_q;
+  hn::Mask<D> inside;  ///< of the support
+};
+
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE TablePlaces<D> find_places(D d, const RadialTable& table, V q_sq) {
+  const V inverse = inverse_sqrt(d, q_sq);
+  const V place = hn::Mul(hn::Mul(q_sq, inverse), hn::Set(d, table.segments_per_radius));
+  const V number = hn::Min(hn::Floor(place), hn::Set(d, table.last_segment));
+  return {hn::ConvertTo(hn::RebindToSigned<D>(), number), hn::Sub(place, number), inverse,
+          hn::Le(q_sq, hn::Set(d, table.support_sq))};
+}
+
+/// The cubics with coefficients c at their places.
+template <bool kSteepness, class D, class V = hn::Vec<D>>
+HWY_INLINE RadialLanes<V> cubic_at(D d, const RadialTable& table, const TablePlaces<D>& places,
+                                   const std::array<V, RadialTable::record_size>& c) {
+  const V t = places.t;
+  const V value = hn::MulAdd(t, hn::MulAdd(t, hn::MulAdd(t, c[3], c[2]), c[1]), c[0]);
+  RadialLanes<V> phi{hn::IfThenElseZero(places.inside, value), t};
+  if constexpr (kSteepness) {
+    const V twice_c2 = hn::Add(c[2], c[2]), thrice_c3 = hn::Mul(hn::Set(d, -3.0f), c[3]);
+    const V downwards = hn::MulSub(t, hn::MulSub(t, thrice_c3, twice_c2), c[1]);
+    const V per_radius = hn::Mul(hn::Set(d, table.segments_per_radius), places.inverse_q);
+    phi.steepness = hn::IfThenElseZero(places.inside, hn::Mul(downwards, per_radius));
+  }
+  return phi;
+}
+
+struct TabulatedShape : SumShape {
+  const RadialTable* table;
+
+  template <bool kSteepness, class D, class V = hn::Vec<D>>
+  HWY_INLINE RadialLanes<V> at(D d, V q_sq) const {
+    const TablePlaces<D> places = find_places(d, *table, q_sq);
+    const hn::RebindToSigned<D> di;
+    alignas(64) std::int32_t offset[max_lanes];
+    hn::Store(hn::ShiftLeft<2>(places.segment), di, offset);
+    std::array<V, RadialTable::record_size> c;
+    load_fours(d, table->coefficients.data(), offset, c);
+    return cubic_at<kSteepness>(d, *table, places, c);
+  }
+};
+
+#if HWY_TARGET <= HWY_AVX3
+/// A table of few segments: a permutation of two registers finds a coefficient.
+struct SmallTableShape : SumShape {
+  const RadialTable* table;
+  /// By coefficient, of segments 0 to 15 and 16 to 31.
+  __m512 coefficients[RadialTable::record_size][2];
+
+  explicit SmallTableShape(const RadialTable& from) : table(&from) {
+    alignas(64) float c[RadialTable::record_size][RadialTable::few] = {};
+    for (std::size_t i = 0; i < from.coefficients.size(); ++i) {
+      c[i % RadialTable::record_size][i / RadialTable::record_size] = from.coefficients[i];
+    }
+    for (std::size_t k = 0; k < RadialTable::record_size; ++k) {
+      coefficients[k][0] = _mm512_load_ps(c[k]);
+      coefficients[k][1] = _mm512_load_ps(c[k] + 16);
+    }
+  }
+
+  template <bool kSteepness, class D, class V = hn::Vec<D>>
+  HWY_INLINE RadialLanes<V> at(D d, V q_sq) const {
+    const TablePlaces<D> places = find_places(d, *table, q_sq);
+    const auto number = places.segment;
+    const auto look_up = [&](int k) MOTES_INLINE HWY_ATTR {
+      const __m512 low = coefficients[k][0], high = coefficients[k][1];
+      if constexpr (hn::MaxLanes(D()) == 16) {
+        return V{_mm512_permutex2var_ps(low, number.raw, high)};
+      } else {
+        // The upper half is of no interest.
+        const __m512i wide = _mm512_castsi256_si512(number.raw);
+        return V{_mm512_castps512_ps256(_mm512_permutex2var_ps(low, wide, high))};
+      }
+    };
+    return cubic_at<kSteepness>(d, *table, places,
+                                {look_up(0), look_up(1), look_up(2), look_up(3)});
+  }
+};
+#endif
+
+/// Calls use(shape) with the shape of a field's kernels, if they are no Gaussians.
+template <class Use>
+HWY_INLINE void with_shape(const FieldKernels& field, Use&& use) {
+  switch (field.kernel.shape.type) {
+    case KernelType::gaussian:
+      return;
+    case KernelType::cubic_spline:
+      return use(CubicSplineShape{});
+    case KernelType::quintic_spline:
+      return use(QuinticSplineShape{});
+    case KernelType::wendland_c2:
+      return use(WendlandC2Shape{});
+    case KernelType::wendland_c4:
+      return use(WendlandC4Shape{});
+    case KernelType::wendland_c6:
+      return use(WendlandC6Shape{});
+    case KernelType::tabulated:
+#if HWY_TARGET <= HWY_AVX3
+      if (field.table.has_few()) return use(SmallTableShape(field.table));
+#endif
+      return use(TabulatedShape{{}, &field.table});
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace motes
+HWY_AFTER_NAMESPACE();
+
+#endif
