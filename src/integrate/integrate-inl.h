@@ -19,105 +19,16 @@
 
 #include "integrate/classifier.h"
 #include "integrate/classify-inl.h"
+#include "integrate/composite-inl.h"
+#include "integrate/layers-inl.h"
 #include "integrate/shading.h"
 #include "samples/lanes-inl.h"
+#include "samples/layers.h"
 #include "samples/samples.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace motes {
 namespace HWY_NAMESPACE {
-
-/// The samples of a slab: [sample][field][channel][lane].
-struct SlabSamples {
-  const float* first;  ///< sample 0, field 0, channel 0
-  std::size_t stride, field_stride;
-  const float* at(int sample, std::size_t field) const {
-    return first + static_cast<std::size_t>(sample) * stride + field * field_stride;
-  }
-};
-
-/// Samples of a slab, at most: a bit each.
-inline constexpr int max_slab = 64;
-
-/// Samples of the slab's fields that some ray may see, in the order in which rays meet them.
-struct SeenSamples {
-  static constexpr std::size_t most = std::size_t{max_slab} * max_fields;
-  struct Seen {
-    std::uint8_t sample, field;
-  };
-  std::array<Seen, most + 1> seen;
-  std::size_t count = 0;
-
-  /// Bit i of visible[f]: field f may be seen at sample i.
-  SeenSamples(const std::uint64_t* visible, std::size_t num_fields) {
-    std::uint64_t left = 0;
-    for (std::size_t f = 0; f < num_fields; ++f) left |= visible[f];
-    for (; left != 0; left &= left - 1) {
-      const int sample = std::countr_zero(left);
-      for (std::size_t f = 0; f < num_fields; ++f) {
-        seen[count] = {static_cast<std::uint8_t>(sample), static_cast<std::uint8_t>(f)};
-        count += visible[f] >> sample & 1;
-      }
-    }
-  }
-
-  int sample(std::size_t i) const { return seen[i].sample; }
-  std::size_t field(std::size_t i) const { return seen[i].field; }
-  /// The last of the fields of its sample.
-  bool ends_sample(std::size_t i) const {
-    return i + 1 == count || seen[i + 1].sample != seen[i].sample;
-  }
-};
-
-/// Rays of a block on their way through a slab, samples counted from its begin.
-struct BlockRays {
-  Lanes first, last;
-  LaneMask alive;         ///< have samples in the slab and have not ended
-  Lanes color[3], alpha;  ///< so far
-  Lanes highlight;        ///< light that is white, before the factor for specular light
-  bool any_ended = false;
-
-  /// Lets `rays` through a sample; what they see of it.
-  HWY_INLINE Lanes pass(LaneTag d, LaneMask rays, Lanes opacity) {
-    const Lanes transparency = hn::Sub(hn::Set(d, 1.0f), alpha);
-    const Lanes weight = hn::IfThenElseZero(rays, hn::Mul(transparency, opacity));
-    alpha = hn::Add(alpha, weight);
-    return weight;
-  }
-
-  HWY_INLINE LaneMask opaque(LaneTag, Lanes termination) const {
-    return hn::And(alive, hn::Gt(alpha, termination));
-  }
-
-  /// Adds what of a field's sample is seen: its part of what rays get, in the n-th place of `from`.
-  /// Listing 1 of the paper.
-  template <bool kGradients, std::size_t N>
-  HWY_INLINE void add(LaneTag d, const ShadingConstants& constants, const Contributions<N>& from,
-                      std::size_t n, Lanes weight) {
-    if constexpr (kGradients) {
-      highlight = hn::MulAdd(weight, from.light.specular[n], highlight);
-      weight = hn::Mul(weight, diffuse_factor(d, constants, from.light, n));
-    }
-    unroll<3>([&](std::size_t i) MOTES_INLINE HWY_ATTR {
-      color[i] = hn::MulAdd(weight, from.color[i][n], color[i]);
-    });
-  }
-
-  /// Ends rays that are opaque enough after all fields of a sample; false if none goes on.
-  HWY_INLINE bool end_opaque(LaneTag d, Lanes termination, int sample) {
-    const LaneMask ends = opaque(d, termination);
-    if (HWY_LIKELY(hn::AllFalse(d, ends))) return true;
-    last = hn::IfThenElse(ends, hn::Set(d, static_cast<float>(sample)), last);
-    alive = hn::AndNot(ends, alive);
-    any_ended = true;
-    return !hn::AllFalse(d, alive);
-  }
-
-  HWY_INLINE LaneMask alive_at(LaneTag d, int sample) const {
-    const Lanes index = hn::Set(d, static_cast<float>(sample));
-    return hn::And(alive, hn::And(hn::Le(first, index), hn::Le(index, last)));
-  }
-};
 
 /// Composites samples one after the other, ending rays where their opacity is enough after all
 /// fields of a sample: false if none goes on. They are those from `first` on, as far as there are.
@@ -193,16 +104,18 @@ class Integrator {
   Integrator(const std::vector<Classifier>& classifiers, const ShadingConstants& constants,
              const SampleLayout& layout)
       : frame_(classifiers, constants, layout),
-        add_seen_(layout.gradients ? choose<true>() : choose<false>()) {}
+        add_seen_(layout.gradients ? choose<true>() : choose<false>()),
+        add_seen_with_layers_(layout.gradients ? &add_seen_with_layers<true>
+                                               : &add_seen_with_layers<false>) {}
 
   /// Something may be seen where there is no kernel.
   bool zero_shows() const { return frame_.zero_shows; }
 
   /// Composites the samples of `slab`, at most max_slab, into the rays' colours. Bit i of
   /// visible[f]: field f may be seen at sample i. A ray that reaches the termination opacity ends.
-  /// Hot: nothing is checked.
+  /// `layers` are those in the rays' way, or null. Hot: nothing is checked.
   void run(const Slab& slab, const SlabSamples& samples, const std::uint64_t* visible,
-           RayState& rays) const {
+           RayState& rays, BlockLayers* layers = nullptr) const {
     const LaneTag d;
     const Lanes slab_first = hn::Set(d, static_cast<float>(slab.first));
     BlockRays block;
@@ -210,27 +123,36 @@ class Integrator {
     block.last = hn::Sub(hn::Load(d, rays.last), slab_first);
     block.alive = hn::And(hn::Le(block.first, hn::Set(d, static_cast<float>(slab.count - 1))),
                           hn::Ge(block.last, hn::Zero(d)));
-    block.color[0] = hn::Load(d, rays.r);
-    block.color[1] = hn::Load(d, rays.g);
-    block.color[2] = hn::Load(d, rays.b);
-    block.alpha = hn::Load(d, rays.a);
-    block.highlight = hn::Zero(d);
-    add_seen_(d, BlockShading(d, frame_, rays), samples,
-              SeenSamples(visible, frame_.classifiers.size()), block);
+    block.load_colors(d, rays);
+    const SeenSamples seen(visible, frame_.classifiers.size());
+    const BlockShading shading(d, frame_, rays);
+    if (layers != nullptr &&
+        any_layer_before(d, *layers, static_cast<float>(slab.first + slab.count))) {
+      add_seen_with_layers_(d, shading, samples, seen, slab.first, *layers, block);
+    } else {
+      add_seen_(d, shading, samples, seen, block);
+    }
     if (HWY_UNLIKELY(block.any_ended)) {
       rays.end = slab.first + static_cast<int>(hn::GetLane(hn::MaxOfLanes(d, block.last)));
       hn::Store(hn::Add(block.last, slab_first), d, rays.last);
     }
     const Lanes specular = hn::Set(d, frame_.constants.specular);
     for (Lanes& each : block.color) each = hn::MulAdd(specular, block.highlight, each);
-    hn::Store(block.color[0], d, rays.r);
-    hn::Store(block.color[1], d, rays.g);
-    hn::Store(block.color[2], d, rays.b);
-    hn::Store(block.alpha, d, rays.a);
+    block.store_colors(d, rays);
+  }
+
+  /// Composites the layers behind the last samples.
+  void finish(BlockLayers& layers, RayState& rays) const {
+    const LaneTag d;
+    BlockRays block;
+    block.load_colors(d, rays);
+    composite_rest(d, hn::Set(d, frame_.constants.termination_opacity), layers, block);
+    block.store_colors(d, rays);
   }
 
   /// The same for any number of samples of which it is not known yet which may be seen.
-  void run(const Slab& slab, SampleBuffer& buffer, RayState& rays) const {
+  void run(const Slab& slab, SampleBuffer& buffer, RayState& rays,
+           BlockLayers* layers = nullptr) const {
     const LaneTag d;
     const SampleLayout& layout = frame_.layout;
     for (int begin = 0; begin < slab.count && slab.first + begin <= rays.end; begin += max_slab) {
@@ -246,7 +168,7 @@ class Integrator {
       run({slab.first + begin, count},
           {buffer.at(begin, 0), layout.floats_per_sample(),
            static_cast<std::size_t>(layout.channels() * layout.lanes)},
-          visible, rays);
+          visible, rays, layers);
     }
   }
 
@@ -283,6 +205,8 @@ class Integrator {
 
   const FrameShading frame_;
   const AddSeen add_seen_;
+  void (*const add_seen_with_layers_)(LaneTag, const BlockShading&, const SlabSamples&,
+                                      const SeenSamples&, int, BlockLayers&, BlockRays&);
 };
 
 }  // namespace HWY_NAMESPACE

@@ -99,51 +99,109 @@ std::optional<Vector3d> normal_of(const FieldValue& field, double smallest_radiu
   return -field.gradient / steepness;
 }
 
-Pixel render_pixel(const Volume& volume, const ResolvedScene& scene, int px, int py) {
+/// The fields of the volume at x.
+std::vector<Classified> classify_sample(const Volume& volume, const ResolvedScene& scene,
+                                        const std::vector<std::vector<ParticleKernel>>& fields,
+                                        const Point3d& x, const Vector3d& view, Pixel& pixel) {
+  const Lighting& lighting = scene.render.lighting;
+  const Vector3d light = lighting.direction ? normalize(*lighting.direction) : view;
+  const double tolerance = stability_tolerance * length(x - scene.camera.eye);
+  std::vector<Classified> samples;
+  for (std::size_t f = 0; f < fields.size(); ++f) {
+    const FieldValue field = evaluate_field(fields[f], x);
+    if (field.boundary_distance <= tolerance) pixel.unstable = true;
+    pixel.kernel_evaluations += field.num_kernels;
+    Classified sample = classify(scene.transfer_functions[f], field.value);
+    if (lighting.enabled) {
+      if (field.absolute > 0 && field.absolute < faintest_normal * volume.largest_peak[f]) {
+        pixel.faint = true;
+      }
+      sample = shade(sample, lighting, normal_of(field, volume.smallest_radius[f]), view, light);
+    }
+    samples.push_back(sample);
+  }
+  return samples;
+}
+
+/// A ray on its way through samples and layers.
+class Way {
+ public:
+  Way(const std::vector<Layer>& layers, double termination, Pixel& pixel)
+      : layers_(layers), termination_(termination), pixel_(pixel) {}
+
+  bool ended() const { return pixel_.color.alpha > termination_; }
+
+  /// Meets the layers in front of that depth.
+  void meet_layers(double depth) {
+    for (; next_ < layers_.size() && layers_[next_].depth < depth && !ended(); ++next_) {
+      const Layer& layer = layers_[next_];
+      const double visible = (1 - pixel_.color.alpha) * layer.opacity;
+      pixel_.color.red += visible * layer.red;
+      pixel_.color.green += visible * layer.green;
+      pixel_.color.blue += visible * layer.blue;
+      pixel_.color.alpha += visible;
+      check_termination();
+    }
+  }
+
+  /// Passes a sample that stands for depths `begin` to `end`, cut where layers are.
+  void pass(const std::vector<Classified>& fields, double begin, double end,
+            double length_per_depth) {
+    while (begin < end && !ended()) {
+      const bool cut = next_ < layers_.size() && layers_[next_].depth < end;
+      const double to = cut ? layers_[next_].depth : end;
+      for (const Classified& field : fields) {
+        composite(pixel_.color, field, (to - begin) * length_per_depth);
+      }
+      check_termination();
+      if (cut) meet_layers(std::nextafter(to, end));
+      begin = to;
+      if (!cut) break;
+    }
+  }
+
+ private:
+  /// An opacity of 1 is never exceeded, so that no ray stops there.
+  void check_termination() {
+    if (termination_ < 1 && std::abs(pixel_.color.alpha - termination_) <= stability_tolerance) {
+      pixel_.unstable = true;
+    }
+  }
+
+  const std::vector<Layer>& layers_;
+  double termination_;
+  Pixel& pixel_;
+  std::size_t next_ = 0;
+};
+
+Pixel render_pixel(const Volume& volume, const ResolvedScene& scene,
+                   const std::vector<Layer>& layers, int px, int py) {
   const Point3d eye = scene.camera.eye;
   const double step_size = scene.step_size;
-  const double termination = scene.render.termination_opacity;
-  const Lighting& lighting = scene.render.lighting;
   const CameraRay ray = camera_ray(scene.camera, scene.render.width, scene.render.height, px, py);
-  const double step_length = step_size * length(ray.direction);
   const Vector3d view = -normalize(ray.direction);
-  const Vector3d light = lighting.direction ? normalize(*lighting.direction) : view;
   std::vector<std::vector<ParticleKernel>> fields;
   for (const auto& kernels : volume.fields) {
     fields.push_back(kernels_near_ray(kernels, ray, eye));
   }
 
   Pixel pixel;
+  Way way(layers, scene.render.termination_opacity, pixel);
   // From the last plane before the box, or the first of all, to the first one behind the box.
   const double first = std::max(0., std::floor(volume.near / step_size - 0.5));
   const double last = std::ceil(volume.far / step_size - 0.5);
-  for (double k = first; k <= last; ++k) {
+  for (double k = first; k <= last && !way.ended(); ++k) {
     const Point3d x = ray.origin + (k + 0.5) * step_size * ray.direction;
     const double tolerance = stability_tolerance * length(x - eye);
     if (distance_to_faces(volume.box, x) <= tolerance) pixel.unstable = true;
     if (!volume.box.contains(x)) continue;
+    way.meet_layers(k * step_size);
+    if (way.ended()) break;
     ++pixel.samples;
-
-    for (std::size_t f = 0; f < fields.size(); ++f) {
-      const FieldValue field = evaluate_field(fields[f], x);
-      if (field.boundary_distance <= tolerance) pixel.unstable = true;
-      pixel.kernel_evaluations += field.num_kernels;
-      Classified sample = classify(scene.transfer_functions[f], field.value);
-      if (lighting.enabled) {
-        if (field.absolute > 0 && field.absolute < faintest_normal * volume.largest_peak[f]) {
-          pixel.faint = true;
-        }
-        sample = shade(sample, lighting, normal_of(field, volume.smallest_radius[f]), view, light);
-      }
-      composite(pixel.color, sample, step_length);
-    }
-
-    // An opacity of 1 is never exceeded, so that no ray stops there.
-    if (termination < 1 && std::abs(pixel.color.alpha - termination) <= stability_tolerance) {
-      pixel.unstable = true;
-    }
-    if (pixel.color.alpha > termination) break;
+    const auto samples = classify_sample(volume, scene, fields, x, view, pixel);
+    way.pass(samples, k * step_size, (k + 1) * step_size, length(ray.direction));
   }
+  way.meet_layers(std::numeric_limits<double>::infinity());
   return pixel;
 }
 
@@ -217,7 +275,8 @@ void composite(RayColor& ray, const Classified& sample, double step_length) {
   ray.alpha += visible;
 }
 
-Image render(const ParticleSet& particles, const ResolvedScene& scene) {
+Image render(const ParticleSet& particles, const ResolvedScene& scene,
+             const std::vector<std::vector<Layer>>& layers) {
   assert(scene.step_size > 0);
   assert(scene.fields.size() == scene.transfer_functions.size());
   const Volume volume = make_volume(particles, scene);
@@ -226,7 +285,9 @@ Image render(const ParticleSet& particles, const ResolvedScene& scene) {
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pixels.size()), [&](const auto& range) {
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
       const auto pixel = static_cast<int>(i);
-      pixels[i] = render_pixel(volume, scene, pixel % width, pixel / width);
+      const std::vector<Layer> none;
+      pixels[i] = render_pixel(volume, scene, layers.empty() ? none : layers[i], pixel % width,
+                               pixel / width);
     }
   });
 

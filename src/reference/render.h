@@ -31,7 +31,16 @@ struct Image {
       0;  ///< pairs of such a sample and a particle whose support holds it
 };
 
-Image render(const ParticleSet& particles, const ResolvedScene& scene);
+/// A piece of surface in the way of a ray.
+struct Layer {
+  double depth = 0;  ///< along the view, from the eye
+  double opacity = 1;
+  double red = 0, green = 0, blue = 0;  ///< linear, not premultiplied
+};
+
+/// `layers`: of each pixel, from the front, [height][width]; empty if there are none.
+Image render(const ParticleSet& particles, const ResolvedScene& scene,
+             const std::vector<std::vector<Layer>>& layers = {});
 
 // What it is made of, apart so that each can be checked by itself:
 

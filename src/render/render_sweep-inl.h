@@ -21,6 +21,7 @@
 #include "field/sweep_columns-inl.h"
 #include "field/take_columns-inl.h"
 #include "integrate/integrate-inl.h"
+#include "render/block_layers-inl.h"
 #include "render/ray_packets.h"
 #include "render/ray_state-inl.h"
 #include "render/tile_output-inl.h"
@@ -42,6 +43,8 @@ struct SweepMemory {
   std::vector<std::uint64_t> visible;  ///< [group][block][field], a bit a plane
   static constexpr int num_blocks = AreaBuffer::groups * AreaBuffer::groups * group_blocks;
   std::vector<RayState> blocks = std::vector<RayState>(num_blocks);  ///< as in AreaBuffer
+  TileLayers layers;
+  std::vector<BlockLayers> block_layers;  ///< one a block, where there are layers at all
   /// Of each block's rays, as in RayState.
   std::vector<SampleIndex> begin = std::vector<SampleIndex>(num_blocks), end = begin;
 };
@@ -110,9 +113,17 @@ class AreaSweep {
   void start() {
     begin_ = INT_MAX;
     end_ = -1;
+    if (context_.layers) {
+      context_.layers(area_, memory_.layers);
+      memory_.block_layers.resize(SweepMemory::num_blocks);
+    }
     for_each_block([&](std::size_t b, int x, int y) {
       RayState& rays = memory_.blocks[b];
       start_rays(context_, x, y, AreaBuffer::group_size, block_rows, rays);
+      if (context_.layers) {
+        take_layers(context_, memory_.layers, area_, x, y, AreaBuffer::group_size,
+                    memory_.block_layers[b], rays);
+      }
       memory_.begin[b] = rays.begin;
       memory_.end[b] = rays.end;
       begin_ = std::min(begin_, rays.begin);
@@ -123,10 +134,17 @@ class AreaSweep {
 
   void finish(Framebuffer& image) {
     for_each_block([&](std::size_t b, int x, int y) {
+      if (BlockLayers* const layers = layers_of(b)) integrator_.finish(*layers, memory_.blocks[b]);
       counts_.samples += count_samples(memory_.blocks[b]);
       store_pixels(memory_.blocks[b], x, y, AreaBuffer::group_size, image);
     });
     clock_.lap(Stage::setup);
+  }
+
+  /// Null where surfaces are not in the way.
+  BlockLayers* layers_of(std::size_t block) {
+    if (!context_.layers || memory_.block_layers[block].most == 0) return nullptr;
+    return &memory_.block_layers[block];
   }
 
   /// Finds the groups that have rays under way on some of the planes, and where the last of all
@@ -362,7 +380,7 @@ class AreaSweep {
       if (std::any_of(visible, visible + num_fields,
                       [](std::uint64_t bits) { return bits != 0; })) {
         integrator_.run(batch, {samples, memory_.buffer.plane_floats(), field_floats_}, visible,
-                        memory_.blocks[b]);
+                        memory_.blocks[b], layers_of(b));
         memory_.end[b] = memory_.blocks[b].end;
       }
       samples += memory_.buffer.block_floats();

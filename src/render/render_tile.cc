@@ -13,6 +13,7 @@
 #include "field/coherent-inl.h"
 #include "field/direct-inl.h"
 #include "integrate/integrate-inl.h"
+#include "render/block_layers-inl.h"
 #include "render/ray_packets.h"
 #include "render/ray_state-inl.h"
 #include "render/render_sweep-inl.h"
@@ -60,17 +61,19 @@ std::uint64_t sample_field(const FrameContext& context, const SamplingConstants&
 /// all rays of the packet have ended. Returns kernel evaluations.
 std::uint64_t render_packet(const FrameContext& context, const SamplingConstants& constants,
                             const Integrator& integrator, const RayPacket& packet,
-                            SampleBuffer& buffer, RayState& rays, StageClock& clock) {
+                            SampleBuffer& buffer, BlockLayers* layers, RayState& rays,
+                            StageClock& clock) {
   std::uint64_t evaluations = 0;
   for (SampleIndex k = rays.begin; k <= rays.end; k += context.samples_per_pass) {
     const Slab slab{k, std::min(rays.end - k + 1, context.samples_per_pass)};
     buffer.reserve(slab.count);
     evaluations += sample_field(context, constants, packet, slab, buffer);
     clock.lap(Stage::sums);
-    integrator.run(slab, buffer, rays);
+    integrator.run(slab, buffer, rays, layers);
     clear_touched(buffer);
     clock.lap(Stage::integrate);
   }
+  if (layers != nullptr) integrator.finish(*layers, rays);
   return evaluations;
 }
 
@@ -81,6 +84,9 @@ TileCounts render_packets(const FrameContext& context, const Tile& tile, Framebu
   const SamplingConstants constants = make_constants(*context.kernels);
   const Integrator integrator(context.classifiers, context.shading, make_layout(context));
   SampleBuffer buffer(make_layout(context), std::min(context.samples_per_pass, 64));
+  TileLayers layers;
+  BlockLayers block_layers;
+  if (context.layers) context.layers(tile, layers);
   TileCounts counts;
   StageClock clock(counts.stages);
   for (int py = tile.y; py < tile.y + tile.height; py += packet_height) {
@@ -88,9 +94,11 @@ TileCounts render_packets(const FrameContext& context, const Tile& tile, Framebu
       const RayPacket packet = make_ray_packet(context, px, py, packet_width, packet_height);
       RayState rays;
       start_rays(context, px, py, packet_width, packet_height, rays);
+      const bool any_layers = context.layers && take_layers(context, layers, tile, px, py,
+                                                            packet_width, block_layers, rays);
       clock.lap(Stage::setup);
-      counts.kernel_evaluations +=
-          render_packet(context, constants, integrator, packet, buffer, rays, clock);
+      counts.kernel_evaluations += render_packet(context, constants, integrator, packet, buffer,
+                                                 any_layers ? &block_layers : nullptr, rays, clock);
       counts.samples += count_samples(rays);
       store_pixels(rays, px, py, packet_width, image);
     }

@@ -10,6 +10,7 @@
 #include "image/framebuffer.h"
 #include "integrate/classifier.h"
 #include "integrate/shading.h"
+#include "render/layer_source.h"
 #include "render/stages.h"
 #include "samples/samples.h"
 #include "scene/scene.h"
@@ -31,11 +32,7 @@ struct FrameContext {
   bool gradients = false, absolute = false;  ///< channels of the samples
   int samples_per_pass = 32;                 ///< planes of a slab
   bool count_inside = false;                 ///< see TileCounts; the sweep alone, without gradients
-};
-
-/// Pixels x to x + width - 1, y to y + height - 1.
-struct Tile {
-  int x = 0, y = 0, width = 0, height = 0;
+  LayerSource layers;                        ///< of surfaces; empty: there are none
 };
 
 struct TileCounts {

@@ -116,6 +116,7 @@ FrameContext make_context(const KernelSet& kernels, const ResolvedScene& scene,
                              : num_fields == 1               ? 32
                                                              : 64 / num_fields;
   const int per_pass = options.samples_per_pass.value_or(default_planes);
+  context.layers = options.layers;
   context.samples_per_pass = per_pass == 0 ? max_single_pass : per_pass;
   return context;
 }

@@ -10,6 +10,7 @@
 #include "field/kernel_set.h"
 #include "image/framebuffer.h"
 #include "particles/particle_set.h"
+#include "render/layer_source.h"
 #include "render/stages.h"
 #include "scene/scene.h"
 
@@ -22,6 +23,8 @@ struct RenderOptions {
   /// to 32, in whole eights.
   std::optional<int> samples_per_pass;
   Progress* progress = nullptr;
+  /// Surfaces in the way of the rays; empty: none.
+  LayerSource layers = {};
   /// Fills RenderStatistics::evaluations_inside too, if the engine is the sweep. For a frame of its
   /// own, that is neither measured nor shown: counting takes time, and the picture is not lit.
   bool count_inside = false;

@@ -24,11 +24,12 @@ std::vector<Way> all_ways() {
 }
 
 Framebuffer render_in(const Way& way, const Renderer& renderer, ResolvedScene scene, int threads,
-                      RenderStatistics* statistics) {
+                      RenderStatistics* statistics, const LayerSource& layers) {
   force_instruction_set(way.instruction_set);
   scene.render.engine = way.engine;
   RenderOptions options;
   options.threads = threads;
+  options.layers = layers;
   options.samples_per_pass = way.samples_per_pass;
   Framebuffer image = renderer.render(scene, options, statistics);
   force_instruction_set("");

@@ -24,6 +24,7 @@ struct Way {
 std::vector<Way> all_ways();
 
 Framebuffer render_in(const Way& way, const Renderer& renderer, ResolvedScene scene,
-                      int threads = 2, RenderStatistics* statistics = nullptr);
+                      int threads = 2, RenderStatistics* statistics = nullptr,
+                      const LayerSource& layers = {});
 
 }  // namespace motes
