@@ -22,6 +22,7 @@ PreparedScene prepare_scene(Scene scene, const ParticleSet& particles,
     Renderer renderer(particles, sources);
     ResolvedScene resolved =
         resolve(scene, particles, fields, sources, renderer.kernels(), &console);
+    renderer.prepare(resolved.render.engine);
     console.finish();
     Scene filled_in = fill_in(scene, fields, sources, resolved);
     return {std::move(renderer),

@@ -345,8 +345,8 @@ void add_picture_options(CLI::App& command, SceneChanges& changes) {
   add_number(command, changes, "--termination-opacity", "A",
              "opacity at which a ray stops (default: 0.97)", opacity,
              [](Scene& scene, double v) { scene.render.termination_opacity = v; });
-  add_option(command, changes, "--engine", "NAME", "sweep, coherent or direct (default: sweep)",
-             read_engine);
+  add_option(command, changes, "--engine", "NAME",
+             "sweep, coherent, direct or cells (default: sweep)", read_engine);
 }
 
 }  // namespace motes

@@ -133,9 +133,6 @@ HWY_INLINE std::uint64_t accumulate_leaf(const KernelSet& kernels,
   return samples * static_cast<std::uint64_t>(frame.lanes);
 }
 
-/// Planes of one frame: few enough that all of them lie near its reference point.
-inline constexpr int max_frame_planes = 32;
-
 /// Fills `buffer` (all zero before) with the fields at the samples of `packet` in `slab`. Returns
 /// kernel evaluations. A long slab (the paper's single pass) is traversed once as well, but its
 /// kernels are added piece by piece, each piece with a reference point of its own.

@@ -158,19 +158,25 @@ struct Centers {
   V x, y, z;
 };
 
-/// Kernels `at` to `at` + Lanes(d) - 1, placed in the frame.
+/// Centres in the coordinates of the tree, placed in the frame.
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE Centers<V> place_centers(D d, const KernelSet& kernels, std::size_t at,
-                                    const SlabFrame& frame) {
-  V world[3];
-  const float* const arrays[3] = {kernels.x.data(), kernels.y.data(), kernels.z.data()};
+HWY_INLINE Centers<V> to_frame(D d, const SlabFrame& frame, V x, V y, V z) {
+  V world[3] = {x, y, z};
   for (int j = 0; j < 3; ++j) {
-    world[j] = hn::Sub(hn::Sub(hn::Load(d, arrays[j] + at), hn::Set(d, frame.reference_high[j])),
+    world[j] = hn::Sub(hn::Sub(world[j], hn::Set(d, frame.reference_high[j])),
                        hn::Set(d, frame.reference_low[j]));
   }
   return {to_camera(d, frame, 0, world[0], world[1], world[2]),
           to_camera(d, frame, 1, world[0], world[1], world[2]),
           to_camera(d, frame, 2, world[0], world[1], world[2])};
+}
+
+/// Kernels `at` to `at` + Lanes(d) - 1, placed in the frame.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE Centers<V> place_centers(D d, const KernelSet& kernels, std::size_t at,
+                                    const SlabFrame& frame) {
+  return to_frame(d, frame, hn::Load(d, kernels.x.data() + at), hn::Load(d, kernels.y.data() + at),
+                  hn::Load(d, kernels.z.data() + at));
 }
 
 /// A lower bound of the squared distance of centres to the frustum's sides, exact where only one is

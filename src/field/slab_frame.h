@@ -32,6 +32,9 @@ struct RayBounds {
 
 RayBounds bounds_of(const RayPacket& packet);
 
+/// Planes of one frame: few enough that all of them lie near its reference point.
+inline constexpr int max_frame_planes = 32;
+
 /// Coordinates in camera axes relative to a reference point.
 struct SlabFrame {
   double reference_x = 0, reference_y = 0, reference_depth = 0;  ///< camera axes, eye at 0

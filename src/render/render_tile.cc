@@ -10,6 +10,7 @@
 // Included again for each instruction set.
 #include <hwy/highway.h>
 
+#include "field/cells-inl.h"
 #include "field/coherent-inl.h"
 #include "field/direct-inl.h"
 #include "integrate/integrate-inl.h"
@@ -42,8 +43,13 @@ class FlushTinyToZero {
 
 /// Pass 1 for one slab, by the engine and with the channels of the frame.
 std::uint64_t sample_field(const FrameContext& context, const SamplingConstants& constants,
-                           const RayPacket& packet, const Slab& slab, SampleBuffer& buffer) {
+                           const RayPacket& packet, const RayState& rays, const Slab& slab,
+                           SampleBuffer& buffer) {
   const auto sample = [&]<bool kGradients, bool kAbsolute>() {
+    if (context.engine == Engine::cells) {
+      return sample_cells<kGradients, kAbsolute>(*context.kernels, constants, *context.cells,
+                                                 context.view, packet, rays, slab, buffer);
+    }
     return context.engine == Engine::direct
                ? sample_direct<kGradients, kAbsolute>(*context.kernels, constants, context.view,
                                                       packet, slab, buffer)
@@ -67,7 +73,7 @@ std::uint64_t render_packet(const FrameContext& context, const SamplingConstants
   for (SampleIndex k = rays.begin; k <= rays.end; k += context.samples_per_pass) {
     const Slab slab{k, std::min(rays.end - k + 1, context.samples_per_pass)};
     buffer.reserve(slab.count);
-    evaluations += sample_field(context, constants, packet, slab, buffer);
+    evaluations += sample_field(context, constants, packet, rays, slab, buffer);
     clock.lap(Stage::sums);
     integrator.run(slab, buffer, rays, layers);
     clear_touched(buffer);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "field/cell_grid.h"
 #include "field/kernel_set.h"
 #include "field/slab_frame.h"
 #include "image/framebuffer.h"
@@ -20,6 +21,7 @@ namespace motes {
 /// Everything that a frame's tiles share; made once a frame, then only read.
 struct FrameContext {
   const KernelSet* kernels = nullptr;
+  const CellGrid* cells = nullptr;  ///< of the engine `cells`
   View view;
   bool orthographic = false;
   double half_width = 0,

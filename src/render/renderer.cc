@@ -136,6 +136,7 @@ Renderer::Renderer(const ParticleSet& particles, const std::vector<FieldSource>&
 TreeUpdate Renderer::set_particles(const ParticleSet& particles,
                                    const std::vector<FieldSource>& fields) {
   const Stopwatch stopwatch;
+  cells_.reset();
   TreeUpdate update = TreeUpdate::refitted;
   if (!refit_kernel_set(particles, fields, order_, kernels_)) {
     update = TreeUpdate::rebuilt;
@@ -146,7 +147,14 @@ TreeUpdate Renderer::set_particles(const ParticleSet& particles,
   return update;
 }
 
+void Renderer::prepare(Engine engine) {
+  if (engine == Engine::cells && !cells_ && kernels_.size() != 0) {
+    cells_ = build_cell_grid(kernels_);
+  }
+}
+
 void Renderer::set_kernel(std::size_t field, const Kernel& kernel) {
+  cells_.reset();
   assert(field < kernels_.fields.size());
   kernels_.fields[field].set_kernel(kernel);
 }
@@ -172,7 +180,12 @@ void Renderer::render(const ResolvedScene& scene, const RenderOptions& options, 
   if (kernels_.size() == 0) {
     std::fill(image.rgba.begin(), image.rgba.end(), 0.0f);
   } else {
-    const FrameContext context = make_context(kernels_, scene, options);
+    FrameContext context = make_context(kernels_, scene, options);
+    std::optional<CellGrid> own_cells;
+    if (context.engine == Engine::cells) {
+      if (!cells_) own_cells = build_cell_grid(kernels_);
+      context.cells = cells_ ? &*cells_ : &*own_cells;
+    }
     const int tile_size = tile_size_of(context.engine);
     const int columns = (context.width + tile_size - 1) / tile_size;
     const int rows = (context.height + tile_size - 1) / tile_size;

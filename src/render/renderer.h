@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/report.h"
+#include "field/cell_grid.h"
 #include "field/kernel_set.h"
 #include "image/framebuffer.h"
 #include "particles/particle_set.h"
@@ -21,7 +22,7 @@ struct RenderOptions {
   /// Planes of samples of one pass over the tree (paper, section 4.2); 0: the whole ray in one
   /// pass; nullopt: 32 for one field, 64 / M for M fields. The sweep takes 16, if it is told so 8
   /// to 32, in whole eights.
-  std::optional<int> samples_per_pass;
+  std::optional<int> samples_per_pass = std::nullopt;
   Progress* progress = nullptr;
   /// Surfaces in the way of the rays; empty: none.
   LayerSource layers = {};
@@ -66,6 +67,10 @@ class Renderer {
   /// neither argument afterwards. Throws what the constructor throws.
   TreeUpdate set_particles(const ParticleSet& particles, const std::vector<FieldSource>& fields);
 
+  /// Makes ready what `engine` needs besides the tree. render() does so itself, for its frame
+  /// alone.
+  void prepare(Engine engine);
+
   /// Changes sigma and kappa of a field; the tree stays.
   void set_kernel(std::size_t field, const Kernel& kernel);
 
@@ -76,6 +81,7 @@ class Renderer {
  private:
   KernelSet kernels_;
   KernelOrder order_;  ///< empty until particles move
+  std::optional<CellGrid> cells_;
   double build_ms_ = 0;
 };
 

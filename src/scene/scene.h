@@ -70,7 +70,7 @@ struct Lighting {
   bool operator==(const Lighting&) const = default;
 };
 
-enum class Engine { sweep, coherent, direct };
+enum class Engine { sweep, coherent, direct, cells };
 /// Throws Error for an unknown name.
 Engine engine_from_name(std::string_view name);
 std::string_view name_of(Engine engine);

@@ -354,10 +354,8 @@ Engine engine_from_name(std::string_view name) {
   if (name == "sweep") return Engine::sweep;
   if (name == "coherent") return Engine::coherent;
   if (name == "direct") return Engine::direct;
-  if (name == "cells") {
-    throw Error("the engine 'cells' is not built yet; expected sweep, coherent or direct");
-  }
-  throw unknown_name("engine", name, {"sweep", "coherent", "direct"});
+  if (name == "cells") return Engine::cells;
+  throw unknown_name("engine", name, {"sweep", "coherent", "direct", "cells"});
 }
 
 Scene parse_scene(std::string_view text, const std::filesystem::path& path) {

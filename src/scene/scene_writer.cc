@@ -158,6 +158,8 @@ std::string_view name_of(Engine engine) {
       return "coherent";
     case Engine::direct:
       return "direct";
+    case Engine::cells:
+      return "cells";
   }
   return "";
 }

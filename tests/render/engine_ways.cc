@@ -19,6 +19,7 @@ std::vector<Way> all_ways() {
       ways.push_back({set, Engine::sweep, samples_per_pass});
     }
     ways.push_back({set, Engine::direct, {}});
+    ways.push_back({set, Engine::cells, {}});
   }
   return ways;
 }

@@ -234,8 +234,8 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{R"("render": {"background": [0.5, 128, 0]})",
                 "render.background: expected \"black\", \"white\", \"#rrggbb\" (sRGB) or [r, g, b] "
                 "(linear, each in [0, 1])"},
-        Refusal{R"("render": {"engine": "cells"})",
-                "render.engine: the engine 'cells' is not built yet"},
+        Refusal{R"("render": {"engine": "grid"})",
+                "render.engine: unknown engine 'grid'; there are: sweep, coherent, direct, cells"},
         Refusal{R"("render": {"engine": "swep"})",
                 "render.engine: unknown engine 'swep'; did you mean 'sweep'?"}));
 

@@ -14,8 +14,8 @@ namespace motes {
 namespace {
 
 // Told apart by people with any colour vision, and on paper.
-constexpr std::array<std::string_view, 6> colors{"#0f6fc6", "#f28e2b", "#9a9a9a",
-                                                 "#2a9d6f", "#c23b4e", "#7a5195"};
+constexpr std::array<std::string_view, 8> colors{"#0f6fc6", "#f28e2b", "#9a9a9a", "#2a9d6f",
+                                                 "#c23b4e", "#7a5195", "#8c6d31", "#17becf"};
 constexpr double left = 70, top = 62, plot_height = 300, right = 20;
 
 std::string escaped(std::string_view text) {

@@ -62,7 +62,8 @@ double evaluations(const FrameTimes& frame) {
 double count_evaluations(const Renderer& renderer, const ResolvedScene& scene,
                          const BenchOptions& options, Console& console) {
   RenderStatistics statistics;
-  renderer.render(scene, {options.threads, std::nullopt, &console, true}, &statistics);
+  renderer.render(scene, {.threads = options.threads, .progress = &console, .count_inside = true},
+                  &statistics);
   FrameTimes frame;
   frame.kernel_evaluations = statistics.kernel_evaluations;
   frame.evaluations_inside = statistics.evaluations_inside;

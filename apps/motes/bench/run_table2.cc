@@ -35,7 +35,7 @@ struct Row {
   bool close;
   Camera camera;
   Pair lit, unlit;
-  std::optional<FrameTimes> direct;  ///< lit
+  std::optional<FrameTimes> direct, cells;  ///< lit
 
   std::string_view view() const { return close ? "close" : "far"; }
   /// How many times longer the sweep takes with lighting.
@@ -46,8 +46,24 @@ struct Row {
   }
 };
 
-Row measure_row(const BenchJob& job, const BenchScene& entry, const PreparedScene& prepared,
-                bool close, Console& console) {
+/// Measures the engines that are slower by far only where that does not take too long.
+void measure_slow_engines(const BenchJob& job, const Variant& lit, PreparedScene& prepared,
+                          Row& row, Console& console) {
+  // Direct and cells take about eight times as long as coherent.
+  constexpr double patience_ms = 2000;
+  if (row.lit.coherent.median_ms > patience_ms) return;
+  for (const auto& [engine, times] :
+       {std::pair{Engine::direct, &row.direct}, {Engine::cells, &row.cells}}) {
+    Variant variant = lit;
+    variant.patience_ms = patience_ms;
+    variant.scene.render.engine = engine;
+    prepared.renderer.prepare(engine);
+    *times = measure_frames({variant}, job.options, console)[0];
+  }
+}
+
+Row measure_row(const BenchJob& job, const BenchScene& entry, PreparedScene& prepared, bool close,
+                Console& console) {
   ResolvedScene scene = prepared.resolved;
   if (close) scene.camera = moved_closer(scene.camera, entry.close);
   std::vector<Variant> variants;
@@ -58,15 +74,9 @@ Row measure_row(const BenchJob& job, const BenchScene& entry, const PreparedScen
     }
   }
   const std::vector<FrameTimes> times = measure_frames(variants, job.options, console);
-  Row row{&entry, close, scene.camera, {times[0], times[1]}, {times[2], times[3]}, std::nullopt};
-  // Direct takes about eight times as long as coherent.
-  constexpr double patience_ms = 2000;
-  if (row.lit.coherent.median_ms <= patience_ms) {
-    Variant direct = variants[0];
-    direct.patience_ms = patience_ms;
-    direct.scene.render.engine = Engine::direct;
-    row.direct = measure_frames({direct}, job.options, console)[0];
-  }
+  Row row{&entry,       close, scene.camera, {times[0], times[1]}, {times[2], times[3]},
+          std::nullopt, {}};
+  measure_slow_engines(job, variants[0], prepared, row, console);
   return row;
 }
 
@@ -76,27 +86,34 @@ std::string or_dash(const std::optional<double>& value) {
 
 void print_header() {
   constexpr const char* format =
-      "{:<16}{:<6}{:>10}{:>8}{:>8}  |{:>8}{:>10}{:>8}{:>8}{:>7}{:>8}  |{:>8}{:>10}{:>8}{:>7}{:>7}"
-      "  |{:>7}{:>7}{:>7}\n";
-  fmt::print(format, "", "", "", "mean", "samples", "lit,", "frames a", "second", "sweep/", "at",
-             "coher./", "unlit,", "the same", "sweep/", "at", "lit/", "paper:", "", "sweep/");
+      "{:<16}{:<6}{:>10}{:>8}{:>8}  |{:>8}{:>10}{:>8}{:>8}{:>8}{:>7}{:>8}{:>8}  |{:>8}{:>10}{:>8}"
+      "{:>7}{:>7}  |{:>7}{:>7}{:>7}\n";
+  fmt::print(format, "", "", "", "mean", "samples", "lit,", "frames a", "second", "", "sweep/",
+             "at", "coher./", "coher./", "unlit,", "the same", "sweep/", "at", "lit/", "paper:", "",
+             "sweep/");
   fmt::print(format, "scene", "view", "particles", "opacity", "a ray", "sweep", "coherent",
-             "direct", "coher.", "most", "direct", "sweep", "coherent", "coher.", "most", "unlit",
-             "MIC", "CPU", "CPU");
+             "direct", "cells", "coher.", "most", "direct", "cells", "sweep", "coherent", "coher.",
+             "most", "unlit", "MIC", "CPU", "CPU");
 }
 
 void print(const Row& row) {
   const auto cpu = row.paper_fps(row.scene->paper.cpu), mic = row.paper_fps(row.scene->paper.mic);
-  std::optional<double> direct, over_direct, over_paper;
+  std::optional<double> direct, over_direct, cells, over_cells, over_paper;
   if (row.direct) {
     direct = row.direct->fps();
     over_direct = row.direct->median_ms / row.lit.coherent.median_ms;
   }
+  if (row.cells) {
+    cells = row.cells->fps();
+    over_cells = row.cells->median_ms / row.lit.coherent.median_ms;
+  }
   if (cpu) over_paper = row.lit.sweep.fps() / *cpu;
-  fmt::print("{:<16}{:<6}{:>10}{:>8.2f}{:>8.1f}  |{:>8.2f}{:>10.2f}{:>8}{:>8.2f}{:>7.1f}{:>8}  |",
-             row.scene->name, row.view(), row.scene->particles, row.lit.sweep.opacity,
-             row.lit.sweep.samples_per_ray, row.lit.sweep.fps(), row.lit.coherent.fps(),
-             or_dash(direct), row.lit.ratio(), row.lit.bound(), or_dash(over_direct));
+  fmt::print(
+      "{:<16}{:<6}{:>10}{:>8.2f}{:>8.1f}  |{:>8.2f}{:>10.2f}{:>8}{:>8}{:>8.2f}{:>7.1f}{:>8}{:>8}  "
+      "|",
+      row.scene->name, row.view(), row.scene->particles, row.lit.sweep.opacity,
+      row.lit.sweep.samples_per_ray, row.lit.sweep.fps(), row.lit.coherent.fps(), or_dash(direct),
+      or_dash(cells), row.lit.ratio(), row.lit.bound(), or_dash(over_direct), or_dash(over_cells));
   fmt::print("{:>8.2f}{:>10.2f}{:>8.2f}{:>7.1f}{:>7.2f}  |{:>7}{:>7}{:>7}\n", row.unlit.sweep.fps(),
              row.unlit.coherent.fps(), row.unlit.ratio(), row.unlit.bound(), row.lit_over_unlit(),
              or_dash(mic), or_dash(cpu), or_dash(over_paper));
@@ -125,11 +142,13 @@ nlohmann::ordered_json to_json(const Row& row, const BenchJob& job, const Prepar
                              {"samples_per_ray", row.lit.sweep.samples_per_ray},
                              {"lit", to_json(row.lit)},
                              {"direct", nullptr},
+                             {"cells", nullptr},
                              {"unlit", to_json(row.unlit)},
                              {"lit_over_unlit", row.lit_over_unlit()},
                              {"paper_cpu_fps", nullptr},
                              {"paper_mic_fps", nullptr}};
   if (row.direct) out["direct"] = to_json(*row.direct);
+  if (row.cells) out["cells"] = to_json(*row.cells);
   if (const auto fps = row.paper_fps(row.scene->paper.cpu)) out["paper_cpu_fps"] = *fps;
   if (const auto fps = row.paper_fps(row.scene->paper.mic)) out["paper_mic_fps"] = *fps;
   return out;
@@ -143,6 +162,7 @@ void add_to_chart(const Row& row, BarChart& chart) {
       row.unlit.sweep.fps(),
       row.unlit.coherent.fps(),
       row.direct ? std::optional<double>(row.direct->fps()) : std::nullopt,
+      row.cells ? std::optional<double>(row.cells->fps()) : std::nullopt,
       row.paper_fps(row.scene->paper.cpu)};
   for (std::size_t s = 0; s < std::size(values); ++s) chart.series[s].values.push_back(values[s]);
 }
@@ -175,10 +195,11 @@ void run_table2(const BenchJob& job) {
                   {"sweep, unlit", {}},
                   {"coherent, unlit", {}},
                   {"direct, lit", {}},
+                  {"cells, lit", {}},
                   {"paper, 16 cores", {}}}};
   for (const BenchScene* entry : job.scenes) {
     Console console;
-    const PreparedScene prepared = prepare_bench_scene(job, *entry, console);
+    PreparedScene prepared = prepare_bench_scene(job, *entry, console);
     for (const bool close : {false, true}) {
       rows.push_back(measure_row(job, *entry, prepared, close, console));
       print(rows.back());
