@@ -237,6 +237,36 @@ TEST_F(Bench, BuildComparesWithEmbreeWhereItIs) {
               1e-9);
 }
 
+TEST_F(Bench, SpheresComparesWithEmbreeWhereItIs) {
+  const Outcome outcome = measure("spheres zeolite");
+  EXPECT_EQ(outcome.err, "");
+  const auto row = result("spheres")["rows"][0];
+  EXPECT_EQ(row["balls"], 3456);
+  ASSERT_EQ(row["views"].size(), 2U);
+  for (const auto& view : row["views"]) {
+    EXPECT_GT(view["hit"].get<double>(), 0.3);
+    EXPECT_GT(view["motes"]["picture_ms"].get<double>(), 0);
+    EXPECT_GT(view["motes"]["occlusion_rays"].get<double>(), 16 * 16 * 16 * 0.3);
+    if (MOTES_EMBREE == 0) {
+      EXPECT_TRUE(view["embree"].empty());
+      continue;
+    }
+    ASSERT_EQ(view["embree"].size(), 9U);  // three qualities, three ways of handing over
+    // Two that know nothing of each other see the same, but for rays that graze.
+    EXPECT_LT(view["different"].get<double>(), 1e-3);
+    const double unoccluded = view["motes"]["unoccluded"];
+    double fastest = 1e9;
+    for (const auto& embree : view["embree"]) {
+      fastest = std::min(fastest, embree["picture_ms"].get<double>());
+      if (embree["rays"] == "streams") continue;
+      EXPECT_NEAR(embree["unoccluded"].get<double>(), unoccluded, 0.01 * unoccluded);
+    }
+    EXPECT_NEAR(view["embree_over_motes"].get<double>() * view["motes"]["picture_ms"].get<double>(),
+                fastest, 1e-9);
+  }
+  EXPECT_THAT(workspace_.read("out/bench/spheres.svg"), StartsWith("<svg "));
+}
+
 TEST_F(Bench, LatticeHasFourSizes) {
   const Outcome outcome = measure("lattice");
   EXPECT_EQ(outcome.err, "");
@@ -346,7 +376,7 @@ TEST_F(Bench, Fig8AndFig9MakePictures) {
 
 TEST_F(Bench, ASceneTooLargeForTheMemoryIsRefusedFirst) {
   for (const std::string what :
-       {"scenes", "table1", "table2", "fields", "build", "limit", "threads"}) {
+       {"scenes", "table1", "table2", "fields", "build", "limit", "threads", "spheres"}) {
     EXPECT_THAT(failure("bench " + what + " tryptophan cosmology --memory 2" + data, 1),
                 StartsWith("motes: error: cosmology: 82051072 particles need "));
   }

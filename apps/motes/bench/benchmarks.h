@@ -32,6 +32,7 @@ void run_limit(const BenchJob& job);
 void run_lattice(const BenchJob& job);  ///< makes its own particles, as radii does
 void run_radii(const BenchJob& job);
 void run_threads(const BenchJob& job);
+void run_spheres(const BenchJob& job);
 void run_fig6(const BenchJob& job);
 void run_fig7(const BenchJob& job);
 void run_fig8(const BenchJob& job);

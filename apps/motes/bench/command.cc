@@ -33,6 +33,7 @@ constexpr const char* examples =
   lattice   frame times of lattices from 91 thousand to 82 million particles, unlit
   radii     time of a kernel evaluation where radii differ by orders of magnitude
   threads   frame times of several threads beside those of one
+  spheres   balls by the one tree, beside Embree's sphere geometry
   fig6      frames per second from a thousand to all particles of the cosmological box
   fig7      frames per second with rays that end early or late, and with passes of many samples
   fig8      pictures for several kernel scales (kappa), and their frames per second
@@ -64,6 +65,7 @@ constexpr Benchmark benchmarks[] = {{"scenes", run_scenes},
                                     {"lattice", run_lattice, {}, 0},
                                     {"radii", run_radii, {}, 0},
                                     {"threads", run_threads, {"nanosphere_90k"}},
+                                    {"spheres", run_spheres, {"sio2"}},
                                     {"fig6", run_fig6, {"cosmology"}, 1},
                                     {"fig7", run_fig7, {"cosmology"}, 1},
                                     {"fig8", run_fig8, {"nanobowl"}},

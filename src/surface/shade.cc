@@ -1,0 +1,209 @@
+#include "surface/shade.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "surface/directions.h"
+#include "surface/spots.h"
+
+namespace motes {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// s c + plus
+Color scaled(const Color& c, double s, double plus) {
+  const auto channel = [&](float x) {
+    return static_cast<float>(s * static_cast<double>(x) + plus);
+  };
+  return {channel(c.r), channel(c.g), channel(c.b)};
+}
+
+/// Phong's model (docs/surface.md). `view`: unit vector from the surface to the eye; the lighting's
+/// direction, if there is one, is a unit vector.
+Color phong(const Lighting& lighting, const Color& base, const Vector3d& normal,
+            const Vector3d& view, const Light& light) {
+  const double sky = static_cast<double>(light.sky);
+  if (!lighting.enabled) return scaled(base, sky, 0);
+  const Vector3d lamp = lighting.direction.value_or(view);
+  // What a headlight does not reach would lie behind what is seen: the open sky stands for it.
+  const double lit = lighting.direction ? static_cast<double>(light.lamp) : sky;
+  const double cosine = dot(normal, lamp);
+  if (!(cosine > 0) || lit == 0) return scaled(base, lighting.ambient * sky, 0);
+  const double mirrored = std::max(dot(normal, normalize(lamp + view)), 0.0);
+  return scaled(base, lighting.ambient * sky + lit * lighting.diffuse * cosine,
+                lit * lighting.specular * std::pow(mirrored, lighting.shininess));
+}
+
+/// One rect on its way.
+class RectShader {
+ public:
+  RectShader(const SurfaceFrame& frame, const PixelRect& rect)
+      : frame_(frame),
+        shading_(frame.shading),
+        n_(frame.plane.samples),
+        margin_(has_spots() ? pattern_side / 2 : 0),
+        rect_(rect) {}
+
+  void run(SurfaceSamples& out) {
+    make_grid();
+    trace(*frame_.surface, frame_.view, grid_, hits_);
+    if (has_spots()) light_spots();
+    const auto rays_per_pixel = static_cast<std::size_t>(n_) * static_cast<std::size_t>(n_);
+    const std::size_t size = static_cast<std::size_t>(rect_.width) *
+                             static_cast<std::size_t>(rect_.height) * rays_per_pixel;
+    out.depth.resize(size);
+    out.color.resize(size);
+    for (int y = 0; y < rect_.height; ++y) {
+      for (int x = 0; x < rect_.width; ++x) shade_pixel(x, y, out);
+    }
+  }
+
+ private:
+  bool has_shadows() const { return shading_.shadows && shading_.lighting.direction.has_value(); }
+  bool has_soft_shadows() const { return has_shadows() && shading_.light_radius > 0; }
+  bool has_spots() const { return shading_.occlusion_samples > 0 || has_soft_shadows(); }
+
+  /// The rays of the rect and of a margin around it, over which light is evened out.
+  void make_grid() {
+    const ImagePlane& plane = frame_.plane;
+    grid_.du = 2 * plane.half_width / (plane.width * n_);
+    grid_.dv = -2 * plane.half_height / (plane.height * n_);
+    grid_.u = 0.5 * grid_.du - plane.half_width;
+    grid_.v = 0.5 * grid_.dv + plane.half_height;
+    grid_.column = n_ * (rect_.x - margin_);
+    grid_.row = n_ * (rect_.y - margin_);
+    grid_.width = n_ * (rect_.width + 2 * margin_);
+    grid_.height = n_ * (rect_.height + 2 * margin_);
+  }
+
+  /// A ray of the grid, and what it hits.
+  struct Ray {
+    Point3d origin;
+    Vector3d direction;
+    SurfaceHit hit;
+    SurfacePoint point() const { return {origin + hit.depth * direction, hit.particle, hit.stick}; }
+  };
+  /// Ray i of pixel (x, y), counted from the rect's first.
+  Ray ray_of(int x, int y, int i) const {
+    const int column = n_ * (x + margin_) + i % n_, row = n_ * (y + margin_) + i / n_;
+    const CameraAxes& axes = frame_.view.axes;
+    const Vector3d across = (grid_.u + (grid_.column + column) * grid_.du) * axes.x +
+                            (grid_.v + (grid_.row + row) * grid_.dv) * axes.y;
+    const SurfaceHit hit =
+        hits_[static_cast<std::size_t>(row) * static_cast<std::size_t>(grid_.width) +
+              static_cast<std::size_t>(column)];
+    if (frame_.view.orthographic) return {frame_.view.eye + across, axes.forward, hit};
+    return {frame_.view.eye, axes.forward + across, hit};
+  }
+
+  /// Finds the spots, each where the first of its pixel's rays meets it, and their light.
+  void light_spots() {
+    spots_.reset(rect_.width + 2 * margin_);
+    for (int y = -margin_; y < rect_.height + margin_; ++y) {
+      for (int x = -margin_; x < rect_.width + margin_; ++x) {
+        for (int i = 0; i < n_ * n_; ++i) {
+          const Ray ray = ray_of(x, y, i);
+          if (ray.hit.any()) spots_.add({ray.point(), Vector3d(ray.hit.normal), {}});
+        }
+        const int pattern = pattern_class(rect_.x + x, rect_.y + y);
+        for (Spot& spot : spots_.end_pixel()) spot.light = light_of(spot, pattern);
+      }
+    }
+  }
+
+  Light light_of(const Spot& spot, int pattern) {
+    Light light;
+    if (const int count = shading_.occlusion_samples; count > 0) {
+      const Across sides = across(spot.normal);
+      directions_.clear();
+      for (int i = 0; i < count; ++i) {
+        const Vector3d d(frame_.sky[static_cast<std::size_t>(pattern * count + i)]);
+        directions_.emplace_back(d.x * sides.x + d.y * sides.y + d.z * spot.normal);
+      }
+      light.sky = free_part(spot.point, count, shading_.occlusion_distance);
+    }
+    if (has_soft_shadows()) {
+      const int count = shading_.shadow_samples;
+      directions_.clear();
+      for (int i = 0; i < count; ++i) {
+        const Vector3f& d = frame_.lamp[static_cast<std::size_t>(pattern * count + i)];
+        if (dot(Vector3d(d), spot.normal) > 0) directions_.push_back(d);
+      }
+      light.lamp = free_part(spot.point, count, infinity);
+    }
+    return light;
+  }
+  /// The part of `count` rays of which those along directions_ are the ones that may be free.
+  float free_part(const SurfacePoint& point, int count, double length) const {
+    return static_cast<float>(num_unoccluded(*frame_.surface, point, directions_, length)) /
+           static_cast<float>(count);
+  }
+
+  void shade_pixel(int x, int y, SurfaceSamples& out) {
+    std::span<const Spot> spots;
+    lights_.clear();
+    if (has_spots()) {
+      spots = spots_.of(x + margin_, y + margin_);
+      for (const Spot& spot : spots) {
+        lights_.push_back(spots_.even_light(x + margin_, y + margin_, spot));
+      }
+    }
+    for (int i = 0; i < n_ * n_; ++i) {
+      const Ray ray = ray_of(x, y, i);
+      const auto at =
+          static_cast<std::size_t>(n_ * y + i / n_) * static_cast<std::size_t>(n_ * rect_.width) +
+          static_cast<std::size_t>(n_ * x + i % n_);
+      out.depth[at] = ray.hit.depth;
+      out.color[at] = {};
+      if (!ray.hit.any()) continue;
+      Light light;
+      for (std::size_t s = 0; s < spots.size(); ++s) {
+        const SurfacePoint& point = spots[s].point;
+        if (point.particle == ray.hit.particle && point.stick == ray.hit.stick) light = lights_[s];
+      }
+      if (has_shadows() && !has_soft_shadows()) light.lamp = hard_light(ray);
+      out.color[at] = phong(shading_.lighting, frame_.surface->colors.of(ray.hit.particle),
+                            Vector3d(ray.hit.normal), -normalize(ray.direction), light);
+    }
+  }
+
+  float hard_light(const Ray& ray) const {
+    const Vector3d& lamp = *shading_.lighting.direction;
+    if (dot(lamp, Vector3d(ray.hit.normal)) <= 0) return 0;
+    const Vector3f direction(lamp);
+    return static_cast<float>(
+        num_unoccluded(*frame_.surface, ray.point(), {&direction, 1}, infinity));
+  }
+
+  const SurfaceFrame& frame_;
+  const SurfaceShading& shading_;
+  int n_, margin_;
+  PixelRect rect_;
+  RayGrid grid_;
+  SurfaceHits hits_;
+  Spots spots_;
+  std::vector<Vector3f> directions_;
+  std::vector<Light> lights_;  ///< of a pixel's spots
+};
+
+}  // namespace
+
+SurfaceFrame make_surface_frame(const Surface& surface, const SurfaceView& view,
+                                const ImagePlane& plane, const SurfaceShading& shading) {
+  SurfaceFrame frame{&surface, view, plane, shading, {}, {}};
+  frame.sky = cosine_directions(shading.occlusion_samples, shading.seed);
+  if (auto& direction = frame.shading.lighting.direction) {
+    *direction = normalize(*direction);
+    frame.lamp =
+        cone_directions(shading.shadow_samples, *direction, shading.light_radius, shading.seed);
+  }
+  return frame;
+}
+
+void render_surface(const SurfaceFrame& frame, const PixelRect& rect, SurfaceSamples& out) {
+  RectShader(frame, rect).run(out);
+}
+
+}  // namespace motes

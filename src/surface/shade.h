@@ -1,0 +1,69 @@
+// Balls and sticks in light: colours and depths of a tile's pixels, with ambient occlusion and
+// shadows by further rays.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "core/aligned.h"
+#include "core/color.h"
+#include "core/vec.h"
+#include "scene/scene.h"
+#include "surface/surface.h"
+#include "surface/trace.h"
+
+namespace motes {
+
+/// Where a frame's rays are: pixel (px, py), counted from the top left, has n x n of them at even
+/// distances; that in its middle would be at u = (2 (px + 1/2) / width - 1) half_width, v = (1 -
+/// 2 (py + 1/2) / height) half_height (docs/field.md, "Samples").
+struct ImagePlane {
+  double half_width = 0, half_height = 0;  ///< tangents, or internal lengths if orthographic
+  int width = 0, height = 0;               ///< pixels
+  int samples = 1;                         ///< n
+};
+
+/// The light, and what it reaches (docs/surface.md).
+struct SurfaceShading {
+  Lighting lighting;
+  int occlusion_samples = 0;  ///< rays for each pixel's ambient occlusion; 0: there is none
+  /// What is farther away occludes nothing; internal length.
+  double occlusion_distance = std::numeric_limits<double>::infinity();
+  bool shadows = false;     ///< of the lighting's direction; a headlight casts none
+  double light_radius = 0;  ///< how large the light is seen: half its angle, radians; 0: a point
+  int shadow_samples = 16;  ///< rays for each pixel's soft shadow, if light_radius > 0
+  std::uint32_t seed = 0;   ///< of the directions of all these rays
+};
+
+/// Everything that a frame's tiles share; made once a frame, then only read.
+struct SurfaceFrame {
+  const Surface* surface = nullptr;
+  SurfaceView view;
+  ImagePlane plane;
+  SurfaceShading shading;
+  /// Directions of rays, for each of the 8 x 8 pixels of a pattern that covers the image: about +z,
+  /// and about the direction of the light in world axes.
+  std::vector<Vector3f> sky, lamp;
+};
+
+SurfaceFrame make_surface_frame(const Surface& surface, const SurfaceView& view,
+                                const ImagePlane& plane, const SurfaceShading& shading);
+
+/// Pixels x to x + width - 1, y to y + height - 1.
+struct PixelRect {
+  int x = 0, y = 0, width = 0, height = 0;
+};
+
+/// The n x n samples of a PixelRect's pixels as a picture of n * width columns and n * height rows.
+struct SurfaceSamples {
+  UninitializedVector<double> depth;  ///< along the view; infinity where nothing is hit
+  UninitializedVector<Color> color;   ///< linear; of no meaning where nothing is hit
+};
+
+/// Renders `rect` into `out`. What a pixel is depends on the frame and the pixel alone, not on the
+/// rect. Hot: nothing is checked. For one thread; rects of 64 x 64 pixels do well.
+void render_surface(const SurfaceFrame& frame, const PixelRect& rect, SurfaceSamples& out);
+
+}  // namespace motes

@@ -1,0 +1,69 @@
+#include "surface/spots.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "surface/directions.h"
+
+namespace motes {
+namespace {
+
+/// Whether the light that reaches one spot reaches another near it alike: on a flat or smoothly
+/// bent piece of surface, not beyond an edge or a step.
+bool alike(const Spot& a, const Spot& b) {
+  constexpr double least_cosine = 0.8, most_slope = 0.35;
+  if (!(dot(a.normal, b.normal) > least_cosine)) return false;
+  const Vector3d between = b.point.place - a.point.place;
+  const double height =
+      std::max(std::abs(dot(between, a.normal)), std::abs(dot(between, b.normal)));
+  return height <= most_slope * length(between);
+}
+
+}  // namespace
+
+void Spots::reset(int columns) {
+  columns_ = columns;
+  spots_.clear();
+  begin_.assign(1, 0);
+}
+
+void Spots::add(const Spot& spot) {
+  for (std::size_t s = begin_.back(); s < spots_.size(); ++s) {
+    const SurfacePoint& other = spots_[s].point;
+    if (other.particle == spot.point.particle && other.stick == spot.point.stick) return;
+  }
+  spots_.push_back(spot);
+}
+
+std::span<Spot> Spots::end_pixel() {
+  const std::size_t begin = begin_.back();
+  begin_.push_back(spots_.size());
+  return std::span(spots_).subspan(begin);
+}
+
+std::span<const Spot> Spots::of(int x, int y) const {
+  const auto pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) +
+                     static_cast<std::size_t>(x);
+  return std::span(spots_).subspan(begin_[pixel], begin_[pixel + 1] - begin_[pixel]);
+}
+
+Light Spots::even_light(int x, int y, const Spot& spot) const {
+  constexpr int reach = pattern_side / 2;
+  float sum = 0;
+  Light light{0, 0};
+  for (int dy = -reach; dy <= reach; ++dy) {
+    for (int dx = -reach; dx <= reach; ++dx) {
+      // The outermost ones count half: then each pixel of the pattern counts the same.
+      const float weight = (std::abs(dx) == reach ? 0.5f : 1) * (std::abs(dy) == reach ? 0.5f : 1);
+      for (const Spot& other : of(x + dx, y + dy)) {
+        if (&other != &spot && !alike(spot, other)) continue;
+        sum += weight;
+        light.sky += weight * other.light.sky;
+        light.lamp += weight * other.light.lamp;
+      }
+    }
+  }
+  return {light.sky / sum, light.lamp / sum};
+}
+
+}  // namespace motes
