@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cctype>
 #include <cerrno>
 #include <cmath>
 #include <system_error>
@@ -34,7 +35,7 @@ std::uint64_t regular_file_size(const std::filesystem::path& path) {
   }
   if (std::filesystem::is_directory(status)) throw Error(path, "is a directory; expected a file");
   if (!std::filesystem::is_regular_file(status)) {
-    throw Error(path, "is not a regular file; expected a file of particles");
+    throw Error(path, "is not a regular file; expected one");
   }
   const auto size = std::filesystem::file_size(path, error);
   if (error) throw Error(path, fmt::format("cannot be opened: {}", error.message()));
@@ -45,8 +46,8 @@ std::uint64_t regular_file_size(const std::filesystem::path& path) {
 
 void ByteStream::Close::operator()(archive* a) const { archive_read_free(a); }
 
-ByteStream::ByteStream(const std::filesystem::path& path)
-    : path_(path), file_size_(regular_file_size(path)), archive_(archive_read_new()) {
+ByteStream::ByteStream(const std::filesystem::path& path, std::uint64_t size)
+    : path_(path), file_size_(size), archive_(archive_read_new()) {
   archive* a = archive_.get();
   if (a == nullptr) throw Error(path_, "cannot be opened: out of memory");
   archive_read_support_filter_gzip(a);
@@ -55,11 +56,26 @@ ByteStream::ByteStream(const std::filesystem::path& path)
   archive_read_support_filter_zstd(a);
   archive_read_support_format_raw(a);
   archive_read_support_format_empty(a);
+}
+
+ByteStream::ByteStream(const std::filesystem::path& path)
+    : ByteStream(path, regular_file_size(path)) {
   // Larger blocks than the usual 10 KiB, and few enough to keep the start of a file quick.
   const std::size_t block_bytes = std::size_t{256} << 10;
-  if (archive_read_open_filename(a, path_.c_str(), block_bytes) != ARCHIVE_OK) fail();
+  if (archive_read_open_filename(archive_.get(), path_.c_str(), block_bytes) != ARCHIVE_OK) fail();
+  read_header();
+}
+
+ByteStream::ByteStream(const std::filesystem::path& path, std::string_view stored)
+    : ByteStream(path, stored.size()) {
+  if (archive_read_open_memory(archive_.get(), stored.data(), stored.size()) != ARCHIVE_OK) fail();
+  read_header();
+}
+
+/// Of the one entry that the raw format has.
+void ByteStream::read_header() {
   archive_entry* entry = nullptr;
-  const int result = archive_read_next_header(a, &entry);
+  const int result = archive_read_next_header(archive_.get(), &entry);
   at_end_ = result == ARCHIVE_EOF;
   if (result < ARCHIVE_WARN) fail();
 }
@@ -165,6 +181,27 @@ std::string read_decompressed(const std::filesystem::path& path, const ReadOptio
     if (options.progress != nullptr) options.progress->update(activity, stream.fraction());
   }
   return content;
+}
+
+FileContent::FileContent(const std::filesystem::path& path, const ReadOptions& options) {
+  if (ByteStream(path).compressed()) {
+    content_ = read_decompressed(path, options);
+  } else {
+    mapped_ = std::make_unique<MappedFile>(path);
+  }
+}
+
+std::string bare_name(const std::filesystem::path& path) {
+  std::string name = path.filename().string();
+  std::transform(name.begin(), name.end(), name.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  for (const std::string_view ending : {".gz", ".bz2", ".xz", ".zst"}) {
+    if (name.ends_with(ending)) {
+      name.resize(name.size() - ending.size());
+      break;
+    }
+  }
+  return name;
 }
 
 std::string reading_activity(const std::filesystem::path& path) {

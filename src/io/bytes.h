@@ -20,6 +20,9 @@ namespace motes {
 class ByteStream {
  public:
   explicit ByteStream(const std::filesystem::path& path);
+  /// The same of a part of a file that is in memory already and outlives the stream; `path` is for
+  /// messages.
+  ByteStream(const std::filesystem::path& path, std::string_view stored);
 
   /// Fills `out` with the next bytes; fewer than `size` at the end, 0 behind it. What comes before
   /// damage is given before the Error is thrown.
@@ -33,6 +36,9 @@ class ByteStream {
     void operator()(archive* a) const;
   };
 
+  ByteStream(const std::filesystem::path& path, std::uint64_t size);
+
+  void read_header();
   bool next_block(std::size_t filled);
   [[noreturn]] void fail() const;
 
@@ -77,6 +83,22 @@ std::string too_large(std::string_view what, std::uint64_t most_bytes);
 /// Throws Error where it has more than `most_bytes`.
 std::string read_decompressed(const std::filesystem::path& path, const ReadOptions& options,
                               std::uint64_t most_bytes = half_of_memory());
+
+/// The whole (decompressed) content of a file: a plain one is mapped, a compressed one read into
+/// memory. Throws Error as MappedFile and read_decompressed() do.
+class FileContent {
+ public:
+  FileContent(const std::filesystem::path& path, const ReadOptions& options);
+
+  std::string_view bytes() const { return mapped_ ? mapped_->bytes() : std::string_view(content_); }
+
+ private:
+  std::unique_ptr<MappedFile> mapped_;
+  std::string content_;
+};
+
+/// The file's name in lower case, without the endings that compression adds.
+std::string bare_name(const std::filesystem::path& path);
 
 /// "reading NAME", the activity that readers report their progress as.
 std::string reading_activity(const std::filesystem::path& path);

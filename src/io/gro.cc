@@ -222,7 +222,7 @@ class Gro : public TextTrajectory {
       parser.parse(row, text, line);
     };
     for_each_chunk(
-        path(), chunks, [&](std::size_t i) { for_each_row(chunks[i], parse); }, options());
+        path(), chunks.size(), [&](std::size_t i) { for_each_row(chunks[i], parse); }, options());
     return rows;
   }
 

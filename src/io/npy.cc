@@ -3,9 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <bit>
-#include <cstring>
 #include <limits>
 #include <optional>
 
@@ -13,6 +10,7 @@
 #include "io/formats.h"
 #include "io/in_memory.h"
 #include "io/npy_header.h"
+#include "io/scalars.h"
 #include "io/table.h"
 #include "io/type_names.h"
 
@@ -20,41 +18,33 @@ namespace motes {
 
 namespace {
 
-template <class T>
-T load(const char* bytes, bool swap) {
-  std::array<char, sizeof(T)> raw;
-  std::memcpy(raw.data(), bytes, sizeof(T));
-  if (swap) std::reverse(raw.begin(), raw.end());
-  return std::bit_cast<T>(raw);
-}
-
 /// One number of an array as a double.
 double load_number(const NpyField& field, const char* bytes) {
   const bool swap = field.big_endian;
   switch (field.kind) {
     case 'f':
-      return field.size == 4 ? load<float>(bytes, swap) : load<double>(bytes, swap);
+      return field.size == 4 ? load_scalar<float>(bytes, swap) : load_scalar<double>(bytes, swap);
     case 'i':
       switch (field.size) {
         case 1:
-          return load<std::int8_t>(bytes, swap);
+          return load_scalar<std::int8_t>(bytes, swap);
         case 2:
-          return load<std::int16_t>(bytes, swap);
+          return load_scalar<std::int16_t>(bytes, swap);
         case 4:
-          return load<std::int32_t>(bytes, swap);
+          return load_scalar<std::int32_t>(bytes, swap);
         default:
-          return static_cast<double>(load<std::int64_t>(bytes, swap));
+          return static_cast<double>(load_scalar<std::int64_t>(bytes, swap));
       }
     default:  // 'u' and 'b'
       switch (field.size) {
         case 1:
-          return load<std::uint8_t>(bytes, swap);
+          return load_scalar<std::uint8_t>(bytes, swap);
         case 2:
-          return load<std::uint16_t>(bytes, swap);
+          return load_scalar<std::uint16_t>(bytes, swap);
         case 4:
-          return load<std::uint32_t>(bytes, swap);
+          return load_scalar<std::uint32_t>(bytes, swap);
         default:
-          return static_cast<double>(load<std::uint64_t>(bytes, swap));
+          return static_cast<double>(load_scalar<std::uint64_t>(bytes, swap));
       }
   }
 }
@@ -64,7 +54,7 @@ std::string load_text(const NpyField& field, const char* bytes) {
   std::string text;
   const std::size_t width = field.kind == 'U' ? 4 : 1;
   for (std::size_t i = 0; i < field.size; i += width) {
-    const std::uint32_t c = width == 4 ? load<std::uint32_t>(bytes + i, field.big_endian)
+    const std::uint32_t c = width == 4 ? load_scalar<std::uint32_t>(bytes + i, field.big_endian)
                                        : static_cast<unsigned char>(bytes[i]);
     if (c == 0) break;
     text += c < 128 ? static_cast<char>(c) : '?';

@@ -4,31 +4,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <utility>
 #include <vector>
 
 #include "core/error.h"
 #include "io/bytes.h"
 #include "io/format.h"
+#include "io/grid_reader.h"
 
 namespace motes {
 
 namespace {
-
-/// The file's name in lower case, without the endings that compression adds.
-std::string bare_name(const std::filesystem::path& path) {
-  std::string name = path.filename().string();
-  std::transform(name.begin(), name.end(), name.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  for (const std::string_view ending : {".gz", ".bz2", ".xz", ".zst"}) {
-    if (name.ends_with(ending)) {
-      name.resize(name.size() - ending.size());
-      break;
-    }
-  }
-  return name;
-}
 
 const Format* find_format(const std::filesystem::path& path, std::string_view head) {
   for (const Format& format : formats()) {
@@ -59,8 +45,6 @@ const std::vector<ForeignFormat>& foreign_formats() {
       {"DCD", {{4, "CORD"sv}, {8, "CORD"sv}}, {".dcd"}},
       {"GSD", {{0, "\xdf\x65\xdf\x65\xdf\x65\xdf\x65"sv}}, {".gsd"}},
       {"NetCDF", {{0, "CDF\1"sv}, {0, "CDF\2"sv}, {0, "CDF\5"sv}}, {}},
-      {"cube", {}, {".cube", ".cub"}},
-      {"POSCAR", {}, {"poscar", "contcar", ".vasp"}},
       {"TIPSY", {}, {".tipsy", ".tbin"}},
   };
   return table;
@@ -101,6 +85,7 @@ std::unique_ptr<Trajectory> open_trajectory(const std::filesystem::path& path,
   if (head.empty()) throw Error(path, "is empty; expected particles");
   const Format* format = find_format(path, head);
   if (format == nullptr) {
+    if (is_grid_file(path)) throw Error(path, "is a grid without particles; expected particles");
     if (const ForeignFormat* foreign = find_foreign_format(path, head)) {
       throw Error(path, fmt::format("looks like {}, which Motes does not read; expected one of {}",
                                     foreign->name, known_formats()));

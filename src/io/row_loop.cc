@@ -43,12 +43,12 @@ std::vector<RowChunk> split_rows(TextBlock block) {
   return chunks;
 }
 
-void for_each_chunk(const std::filesystem::path& file, const std::vector<RowChunk>& chunks,
+void for_each_chunk(const std::filesystem::path& file, std::size_t num_chunks,
                     const std::function<void(std::size_t)>& parse, const ReadOptions& options) {
-  std::vector<std::exception_ptr> errors(chunks.size());
+  std::vector<std::exception_ptr> errors(num_chunks);
   std::mutex progress_mutex;
   std::size_t num_done = 0;
-  tbb::parallel_for(std::size_t{0}, chunks.size(), [&](std::size_t i) {
+  tbb::parallel_for(std::size_t{0}, num_chunks, [&](std::size_t i) {
     try {
       parse(i);
     } catch (const Error&) {
@@ -58,7 +58,7 @@ void for_each_chunk(const std::filesystem::path& file, const std::vector<RowChun
     const std::lock_guard lock(progress_mutex);
     ++num_done;
     options.progress->update(reading_activity(file),
-                             static_cast<double>(num_done) / static_cast<double>(chunks.size()));
+                             static_cast<double>(num_done) / static_cast<double>(num_chunks));
   });
   for (const std::exception_ptr& error : errors) {
     if (error) std::rethrow_exception(error);

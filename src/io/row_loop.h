@@ -25,7 +25,7 @@ std::vector<RowChunk> split_rows(TextBlock block);
 
 /// Calls parse(chunk_index) for all chunks in parallel, with progress. Of the Errors that it
 /// throws, that of the first chunk is passed on.
-void for_each_chunk(const std::filesystem::path& file, const std::vector<RowChunk>& chunks,
+void for_each_chunk(const std::filesystem::path& file, std::size_t num_chunks,
                     const std::function<void(std::size_t)>& parse, const ReadOptions& options);
 
 /// Calls f(row_index, begin, end, line_number) for each row of the chunk, in order. Returns the

@@ -219,7 +219,7 @@ void parse_table(const std::filesystem::path& file, TextBlock block, std::size_t
   for (Column& column : columns) column.resize(num_rows);
   TableParser parser(file, columns, width, chunks.size());
   for_each_chunk(
-      file, chunks, [&](std::size_t i) { parser.parse_chunk(chunks[i], i); }, options);
+      file, chunks.size(), [&](std::size_t i) { parser.parse_chunk(chunks[i], i); }, options);
   parser.join_words(chunks);
 }
 

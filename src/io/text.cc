@@ -134,6 +134,11 @@ std::vector<std::string_view> split_tokens(std::string_view text) {
   return tokens;
 }
 
+void warn_of_open_end(const std::filesystem::path& file, std::uint64_t line, Warnings* warnings) {
+  if (warnings == nullptr) return;
+  warnings->add(Error(file, line, "the last line has no end; it may be cut short").what());
+}
+
 LineReader::LineReader(const std::filesystem::path& file, TextBlock block, bool complete)
     : file_(file), text_(block.text), next_line_(block.first_line), complete_(complete) {}
 

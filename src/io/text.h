@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/report.h"
 
 namespace motes {
 
@@ -47,6 +48,9 @@ struct TextBlock {
   std::string_view text;
   std::uint64_t first_line = 1;
 };
+
+/// Warns that the last line of a file has no end: what it ends with may be cut short.
+void warn_of_open_end(const std::filesystem::path& file, std::uint64_t line, Warnings* warnings);
 
 /// The text at hand ended too soon. An error, if it is the whole text of the file.
 class TextEnds : public Error {

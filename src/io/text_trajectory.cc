@@ -81,7 +81,7 @@ ParticleSet TextTrajectory::read_frame(std::size_t frame) {
   // Only now: where reading fails, its error says more.
   const std::string_view text = found.block.text;
   if (!text.empty() && text.back() != '\n') {
-    warn(Error(path_, found.end.line - 1, "the last line has no end; it may be cut short").what());
+    warn_of_open_end(path_, found.end.line - 1, options_.warnings);
   }
   return particles;
 }

@@ -106,4 +106,20 @@ void name_types(const std::filesystem::path& file, const Column& types, const Ty
   }
 }
 
+void name_elements(const std::vector<std::int64_t>& numbers, ParticleSet& particles) {
+  std::map<std::int64_t, std::uint16_t> indices;
+  particles.species.reserve(numbers.size());
+  for (const std::int64_t number : numbers) {
+    auto it = indices.find(number);
+    if (it == indices.end()) {
+      const bool small = number > 0 && number < 1000;
+      const Element* element = small ? element_by_number(static_cast<int>(number)) : nullptr;
+      const std::uint16_t index = particles.species_index(
+          element != nullptr ? std::string(element->symbol) : std::to_string(number));
+      it = indices.emplace(number, index).first;
+    }
+    particles.species.push_back(it->second);
+  }
+}
+
 }  // namespace motes

@@ -1,6 +1,7 @@
 // Names for numeric particle types.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -22,6 +23,10 @@ struct TypeHints {
 /// the mass says, or the mass says none; the element of its mass, with a warning; its own number.
 void name_types(const std::filesystem::path& file, const Column& types, const TypeHints& hints,
                 const ReadOptions& options, ParticleSet& particles);
+
+/// Fills species and species_names of `particles` from atomic numbers, which become symbols; a
+/// number that is no element's stays a number.
+void name_elements(const std::vector<std::int64_t>& numbers, ParticleSet& particles);
 
 /// Warns of each type that options.types names but that is not among the file's `types`: the user
 /// may have made a slip. Part of name_types().

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <map>
 #include <utility>
 
 #include "io/extxyz_comment.h"
@@ -13,7 +12,6 @@
 #include "io/table.h"
 #include "io/text_trajectory.h"
 #include "io/type_names.h"
-#include "particles/elements.h"
 
 namespace motes {
 
@@ -81,23 +79,6 @@ XyzColumns extended_columns(const std::vector<ExtxyzProperty>& properties) {
     for (int k = 0; k < property.count; ++k) out.add(component_name(property, k), kind, role);
   }
   return out;
-}
-
-/// Atomic numbers become symbols; a number that is no element's stays a number.
-void name_elements(const std::vector<std::int64_t>& numbers, ParticleSet& particles) {
-  std::map<std::int64_t, std::uint16_t> indices;
-  particles.species.reserve(numbers.size());
-  for (const std::int64_t number : numbers) {
-    auto it = indices.find(number);
-    if (it == indices.end()) {
-      const bool small = number > 0 && number < 1000;
-      const Element* element = small ? element_by_number(static_cast<int>(number)) : nullptr;
-      const std::uint16_t index = particles.species_index(
-          element != nullptr ? std::string(element->symbol) : std::to_string(number));
-      it = indices.emplace(number, index).first;
-    }
-    particles.species.push_back(it->second);
-  }
 }
 
 class Xyz : public TextTrajectory {

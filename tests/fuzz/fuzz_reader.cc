@@ -1,13 +1,10 @@
 // Feeds a reader with any bytes: it gives particles or throws Error, whatever they are.
-#include <sys/mman.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
-#include <string>
 
 #include "core/error.h"
+#include "fuzz/memory_file.h"
 #include "io/format.h"
 
 namespace {
@@ -22,17 +19,6 @@ const motes::Format& fuzzed_format() {
   if (found == formats.end()) std::abort();
   return *found;
 }
-
-/// A file in memory, and the name under which it can be opened.
-struct MemoryFile {
-  const int descriptor = memfd_create("input", 0);
-  const std::string path = "/proc/self/fd/" + std::to_string(descriptor);
-
-  void assign(const std::uint8_t* data, std::size_t size) const {
-    const auto length = static_cast<ssize_t>(size);
-    if (ftruncate(descriptor, 0) != 0 || pwrite(descriptor, data, size, 0) != length) std::abort();
-  }
-};
 
 /// What every frame promises, whatever the file.
 void check(const motes::ParticleSet& particles) {
@@ -54,7 +40,7 @@ void check(const motes::ParticleSet& particles) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const motes::Format& format = fuzzed_format();
-  static const MemoryFile file;
+  static const motes::MemoryFile file;
   file.assign(data, size);
   motes::Warnings warnings;
   const motes::ReadOptions options{.warnings = &warnings};

@@ -62,6 +62,7 @@ INSTANTIATE_TEST_SUITE_P(
         DamagedFile{"bad/missing_atomname.gro", ":3: expected an atom name"},
         DamagedFile{"bad/test_incomplete_vel.gro", ":4: expected a velocity"},
         DamagedFile{"bad/truncated.gro", ":559: the file ends after 556 of 1405 atoms"},
+        DamagedFile{"bad/MnO.misnumbered.poscar", ":32: the file ends after 24 of 36 atoms"},
         DamagedFile{"bad/made/cif_cut_in_loop.cif", ":159: Wrong number of values in the loop"},
         DamagedFile{"bad/made/dump_cut.dump.gz", "", 2},
         DamagedFile{"bad/made/dump_second_frame_cut.dump", "", 1},

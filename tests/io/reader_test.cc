@@ -34,8 +34,7 @@ TEST(OpenTrajectory, NamesWellKnownFormatsThatItDoesNotRead) {
         std::tuple{"a.bin", "\0\0\x07\xcb\0\0"s, "like XTC, which"},
         std::tuple{"a.bin", "T\0\0\0\0\0\0\0CORD"s, "like DCD, which"},
         std::tuple{"a.bin", "CDF\2\0"s, "like NetCDF, which"},
-        std::tuple{"POSCAR", "silicon\n1.0\n"s, "like POSCAR, which"},
-        std::tuple{"a.cube.gz", "\0\0"s, "like cube, which"}}) {
+        std::tuple{"a.tipsy.gz", "\0\0"s, "like TIPSY, which"}}) {
     const TemporaryFile file(name, content);
     EXPECT_THAT([&] { open_trajectory(file.path(), {}); },
                 ThrowsMessage<Error>(

@@ -61,7 +61,11 @@ TEST_P(BundledFiles, OpenWithAllParticlesAndFrames) {
 
 INSTANTIATE_TEST_SUITE_P(
     Data, BundledFiles,
-    testing::Values(KnownFile{"formats/charge.data", "LAMMPS data", 38, 1},
+    testing::Values(KnownFile{"density/CHGCAR_iron.xz", "VASP", 2, 1},
+                    KnownFile{"density/caffeine_orbitals.cube.xz", "cube", 24, 1},
+                    KnownFile{"density/quartz_density.cube.xz", "cube", 9, 1},
+                    KnownFile{"density/silicon_angstrom.cube.xz", "cube", 2, 1},
+                    KnownFile{"formats/charge.data", "LAMMPS data", 38, 1},
                     KnownFile{"formats/ortho_lost_atoms.dump.gz", "LAMMPS dump", 147, 5, 38},
                     KnownFile{"formats/swift_cosmo_0002.hdf5", "SWIFT HDF5", 16000, 1},
                     KnownFile{"formats/tri_frame_00000.dump", "LAMMPS dump", 864, 1},
@@ -149,6 +153,9 @@ INSTANTIATE_TEST_SUITE_P(
         KnownFile{"files/pdb/xl_serial.pdb", "PDB", 4, 1},
         KnownFile{"files/traj/RANDOM_WALK_TOPO.pdb", "PDB", 100, 1},
         KnownFile{"files/traj/test_topology.pdb", "PDB", 5, 1},
+        KnownFile{"files/poscar/BN.selective.dynamics.poscar", "VASP", 2, 1},
+        KnownFile{"files/poscar/Cr.velocity.poscar", "VASP", 2, 1},
+        KnownFile{"files/poscar/MnO.cartesian.poscar", "VASP", 24, 1},
         KnownFile{"files/mmcif/1544173.cif", "CIF", 100, 1},
         KnownFile{"files/mmcif/1ake.cif.gz", "mmCIF", 3804, 1},
         KnownFile{"files/mmcif/4hhb.cif", "mmCIF", 4779, 1},

@@ -1,0 +1,276 @@
+// VTI: image data of VTK's XML files, as text, in base64 or as raw bytes, plain or compressed by
+// zlib.
+#include <fmt/format.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "core/base64.h"
+#include "core/error.h"
+#include "io/bytes.h"
+#include "io/grid_format.h"
+#include "io/number_text.h"
+#include "io/row_loop.h"
+#include "io/scalars.h"
+#include "io/vti_header.h"
+
+namespace motes {
+
+namespace {
+
+std::optional<ScalarType> scalar_type(std::string_view name) {
+  static const std::map<std::string_view, ScalarType> types{
+      {"Int8", ScalarType::int8},       {"UInt8", ScalarType::uint8},
+      {"Int16", ScalarType::int16},     {"UInt16", ScalarType::uint16},
+      {"Int32", ScalarType::int32},     {"UInt32", ScalarType::uint32},
+      {"Int64", ScalarType::int64},     {"UInt64", ScalarType::uint64},
+      {"Float32", ScalarType::float32}, {"Float64", ScalarType::float64},
+  };
+  const auto it = types.find(name);
+  return it == types.end() ? std::nullopt : std::optional(it->second);
+}
+
+/// The values of one array.
+class ArrayReader {
+ public:
+  ArrayReader(const std::filesystem::path& path, const VtiHeader& header, const VtiArray& array,
+              ScalarType type, std::uint64_t num_samples, const ReadOptions& options)
+      : path_(path),
+        header_(header),
+        array_(array),
+        type_(type),
+        num_samples_(num_samples),
+        options_(options) {}
+
+  UninitializedVector<float> read() {
+    UninitializedVector<float> values;
+    if (array_.format == "ascii") {
+      read_text(values);
+    } else if (header_.compressed) {
+      read_blocks(values);
+    } else {
+      read_plain(values);
+    }
+    return values;
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& message) const {
+    throw Error(path_, array_.line, fmt::format("array '{}': {}", printable(array_.name), message));
+  }
+
+  std::uint64_t value_bytes() const { return num_samples_ * size_of(type_); }
+
+  void read_text(UninitializedVector<float>& values) const {
+    const TextBlock text{array_.text, array_.line};
+    const NumberText numbers(path_, text, num_samples_);
+    expect_no_more(path_, numbers.rest(), num_samples_);
+    values.resize(num_samples_);
+    numbers.parse(options_,
+                  [&](std::uint64_t n, double value) { values[n] = static_cast<float>(value); });
+  }
+
+  /// Where the array's bytes begin, and all that follows them.
+  std::string_view stored() const {
+    if (array_.format != "appended") return array_.text;
+    if (array_.offset > header_.appended.size()) {
+      fail(fmt::format("begins at byte {} of the appended data; expected at most {}", array_.offset,
+                       header_.appended.size()));
+    }
+    const std::string_view rest = header_.appended.substr(array_.offset);
+    // (text ends where XML goes on)
+    return header_.appended_base64 ? rest.substr(0, rest.find('<')) : rest;
+  }
+
+  /// The array's first `count` bytes, decoded into `storage` if they must be.
+  std::string_view first_bytes(std::uint64_t count, std::string& storage) const {
+    std::string_view stored = this->stored();
+    if (array_.format == "binary" || header_.appended_base64) {
+      auto bytes = decode_base64(stored, count);
+      if (!bytes) fail("is no good base64");
+      storage = std::move(*bytes);
+      stored = storage;
+    }
+    if (stored.size() < count) {
+      fail(fmt::format("ends after {} of {} bytes", stored.size(), count));
+    }
+    return stored.substr(0, count);
+  }
+
+  /// Number `index` of those that stand before the values.
+  std::uint64_t header_number(std::string_view bytes, std::size_t index) const {
+    const char* const at = bytes.data() + index * header_.header_bytes;
+    const bool swap = header_.big_endian;
+    return header_.header_bytes == 8 ? load_scalar<std::uint64_t>(at, swap)
+                                     : load_scalar<std::uint32_t>(at, swap);
+  }
+
+  /// (`found` in floating point, so that no product of sizes can overflow)
+  void expect_size(double found) const {
+    if (found == static_cast<double>(value_bytes())) return;
+    fail(fmt::format("holds {:.0f} bytes; expected {} for {} samples of {} bytes", found,
+                     value_bytes(), num_samples_, size_of(type_)));
+  }
+
+  /// [number of bytes][bytes]
+  void read_plain(UninitializedVector<float>& values) const {
+    std::string storage;
+    const std::size_t width = header_.header_bytes;
+    expect_size(static_cast<double>(header_number(first_bytes(width, storage), 0)));
+    const std::string_view bytes = first_bytes(width + value_bytes(), storage).substr(width);
+    values.resize(num_samples_);
+    convert_scalars(bytes, type_, header_.big_endian, values);
+  }
+
+  struct Block {
+    std::string_view compressed;
+    std::uint64_t first = 0, count = 0;  ///< samples
+  };
+
+  void read_blocks(UninitializedVector<float>& values) const {
+    std::string storage;
+    const std::vector<Block> blocks = find_blocks(storage);
+    values.resize(num_samples_);
+    for_each_chunk(
+        path_, blocks.size(),
+        [&](std::size_t i) {
+          const Block& block = blocks[i];
+          std::string bytes(block.count * size_of(type_), '\0');
+          auto size = static_cast<uLongf>(bytes.size());
+          const int result = uncompress(reinterpret_cast<Bytef*>(bytes.data()), &size,
+                                        reinterpret_cast<const Bytef*>(block.compressed.data()),
+                                        static_cast<uLong>(block.compressed.size()));
+          if (result != Z_OK || size != bytes.size()) {
+            fail(fmt::format("block {} of {} cannot be decompressed", i + 1, blocks.size()));
+          }
+          convert_scalars(bytes, type_, header_.big_endian,
+                          std::span(values).subspan(block.first, block.count));
+        },
+        options_);
+  }
+
+  /// [number of blocks][bytes of a block][bytes of the last one, 0 if it is whole][compressed bytes
+  /// of each block][blocks]
+  std::vector<Block> find_blocks(std::string& storage) const {
+    const std::size_t width = header_.header_bytes;
+    std::string_view bytes = first_bytes(3 * width, storage);
+    const std::uint64_t num_blocks = header_number(bytes, 0);
+    const std::uint64_t block_bytes = header_number(bytes, 1);
+    const std::uint64_t partial_bytes = header_number(bytes, 2);
+    if (num_blocks == 0 || block_bytes == 0) fail("has no blocks; expected compressed values");
+    const std::uint64_t num_whole = num_blocks - (partial_bytes > 0 ? 1 : 0);
+    expect_size(static_cast<double>(num_whole) * static_cast<double>(block_bytes) +
+                static_cast<double>(partial_bytes));
+    if (block_bytes % size_of(type_) != 0 || partial_bytes % size_of(type_) != 0) {
+      fail(fmt::format("has blocks of {} bytes; expected whole values of {}", block_bytes,
+                       size_of(type_)));
+    }
+    const std::uint64_t table_bytes = (3 + num_blocks) * width;
+    const std::vector<std::uint64_t> sizes =
+        compressed_sizes(first_bytes(table_bytes, storage), num_blocks);
+    const std::uint64_t all = std::accumulate(sizes.begin(), sizes.end(), std::uint64_t{0});
+    check_ratio(all);
+    bytes = first_bytes(table_bytes + all, storage).substr(table_bytes);
+    std::vector<Block> blocks(num_blocks);
+    std::uint64_t first = 0;
+    for (std::size_t i = 0; i < num_blocks; ++i) {
+      const std::uint64_t size = i < num_whole ? block_bytes : partial_bytes;
+      blocks[i] = {bytes.substr(0, sizes[i]), first, size / size_of(type_)};
+      bytes.remove_prefix(sizes[i]);
+      first += blocks[i].count;
+    }
+    return blocks;
+  }
+
+  /// Of each block; in sum no more than what is stored at all.
+  std::vector<std::uint64_t> compressed_sizes(std::string_view table,
+                                              std::uint64_t num_blocks) const {
+    std::vector<std::uint64_t> sizes(num_blocks);
+    std::uint64_t left = stored().size();
+    for (std::size_t i = 0; i < num_blocks; ++i) {
+      sizes[i] = header_number(table, 3 + i);
+      if (sizes[i] > left) {
+        fail(fmt::format("ends before block {} of {} is whole", i + 1, num_blocks));
+      }
+      left -= sizes[i];
+    }
+    return sizes;
+  }
+
+  /// Deflate cannot make more than 1032 bytes of one (zlib.net/zlib_tech.html): memory is taken
+  /// only for what may be there.
+  void check_ratio(std::uint64_t compressed_bytes) const {
+    constexpr double most = 1032;
+    if (static_cast<double>(value_bytes()) > most * static_cast<double>(compressed_bytes)) {
+      fail(fmt::format("has {} compressed bytes, which cannot be {} values", compressed_bytes,
+                       num_samples_));
+    }
+  }
+
+  const std::filesystem::path& path_;
+  const VtiHeader& header_;
+  const VtiArray& array_;
+  ScalarType type_;
+  std::uint64_t num_samples_;
+  const ReadOptions& options_;
+};
+
+/// The lattice of the middles of the cells between the points. An axis with a single point has flat
+/// cells around it.
+Grid cell_lattice(Grid points) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (points.dims[axis] == 1) continue;
+    --points.dims[axis];
+    points.origin = points.origin + 0.5 * points.steps[axis];
+  }
+  return points;
+}
+
+std::vector<Grid> read_vti(const std::filesystem::path& path, const ReadOptions& options) {
+  const FileContent content(path, options);
+  const VtiHeader header = parse_vti(path, content.bytes());
+  check_steps(path, header.points);
+  std::vector<Grid> grids;
+  for (const VtiArray& array : header.arrays) {
+    const auto type = scalar_type(array.type);
+    if (!type || array.num_components != 1) {
+      if (options.warnings == nullptr) continue;
+      options.warnings->add(
+          Error(path, array.line,
+                fmt::format("array '{}' has {} values of type {} a sample and is left out",
+                            printable(array.name), array.num_components, printable(array.type)))
+              .what());
+      continue;
+    }
+    Grid grid = array.of_cells ? cell_lattice(header.points) : header.points;
+    grid.name = array.name;
+    const std::uint64_t num_samples = count_samples(path, grid.dims);
+    grid.values = ArrayReader(path, header, array, *type, num_samples, options).read();
+    grids.push_back(std::move(grid));
+  }
+  if (grids.empty()) {
+    throw Error(path, "has no array with one number a sample; expected PointData or CellData");
+  }
+  return grids;
+}
+
+bool matches_vti(std::string_view head) {
+  const std::size_t begin = head.find("<VTKFile");
+  if (begin == std::string_view::npos) return false;
+  const std::string_view tag = head.substr(begin, head.find('>', begin) - begin);
+  return tag.find("ImageData") != std::string_view::npos;
+}
+
+}  // namespace
+
+const GridFormat& vti_format() {
+  static const GridFormat format{"VTI", {".vti"}, matches_vti, read_vti};
+  return format;
+}
+
+}  // namespace motes
