@@ -24,7 +24,8 @@ bool any_in_view(const KernelSet& kernels, const Camera& camera, double aspect) 
     return std::abs(across) - radius * std::sqrt(1 + tangent * tangent) <= tangent * depth;
   };
   for (std::size_t i = 0; i < kernels.size(); ++i) {
-    const std::size_t field = kernels.field.empty() ? 0 : kernels.field[i];
+    const std::size_t field = kernels.field_of(i);
+    if (field == kernels.fields.size()) return true;  // drawn: it is up to the surfaces
     const double radius =
         kernels.fields[field].kernel.support() * kernels.radius[i] / kernels.length_scale;
     const Vector3d from_origin{kernels.x[i], kernels.y[i], kernels.z[i]};
@@ -41,6 +42,7 @@ bool any_in_view(const KernelSet& kernels, const Camera& camera, double aspect) 
 }  // namespace
 
 bool warn_of_large_steps(const KernelSet& kernels, double step_size, Warnings& warnings) {
+  if (kernels.fields.empty()) return false;
   double radius = 0, support_radius = 0;
   for (const FieldKernels& field : kernels.fields) {
     radius = std::max(radius, field.max_radius);

@@ -17,11 +17,12 @@ PreparedScene prepare_scene(Scene scene, const ParticleSet& particles,
     const auto fields = expand_fields(scene, particles);
     const auto sources =
         make_field_sources(particles, fields, scene.kernel, console.warnings(), &console);
+    const auto geometry = make_geometry_source(particles, scene.geometry, console.warnings());
     console.print_warnings();
     console.update("building the tree", 0);
-    Renderer renderer(particles, sources);
+    Renderer renderer(particles, sources, geometry);
     ResolvedScene resolved =
-        resolve(scene, particles, fields, sources, renderer.kernels(), &console);
+        resolve(scene, particles, fields, sources, geometry, renderer.kernels(), &console);
     renderer.prepare(resolved.render.engine);
     console.finish();
     Scene filled_in = fill_in(scene, fields, sources, resolved);

@@ -201,6 +201,37 @@ SceneChanges::Change read_transfer_function_option(const std::string& text) {
   };
 }
 
+/// What a style draws besides the fields, if anything.
+std::vector<Geometry> geometry_of_style(std::string_view style) {
+  Geometry balls, sticks;
+  sticks.type = Geometry::Type::sticks;
+  sticks.radius = 0.15;
+  if (style == "spheres") return {balls};
+  balls.scale = 0.25;
+  if (style == "ball-and-stick") return {balls, sticks};
+  balls.scale = 0.15;
+  sticks.radius = 0.08;
+  if (style == "volume+balls") return {balls, sticks};
+  return {};
+}
+
+SceneChanges::Change read_style(const std::string& text) {
+  const std::vector<std::string> names{"volume", "spheres", "ball-and-stick", "volume+balls"};
+  if (std::find(names.begin(), names.end(), text) == names.end()) {
+    throw CLI::ValidationError(
+        fmt::format("--style: {}", unknown_name("style", text, names).what()),
+        CLI::ExitCodes::ValidationError);
+  }
+  return [text](Scene& scene) {
+    scene.geometry = geometry_of_style(text);
+    if (text == "spheres" || text == "ball-and-stick") {
+      scene.fields.clear();
+    } else if (scene.fields.empty()) {
+      scene.fields.emplace_back().name = "all";
+    }
+  };
+}
+
 SceneChanges::Change read_engine(const std::string& text) {
   try {
     return [engine = engine_from_name(text)](Scene& scene) { scene.render.engine = engine; };
@@ -345,6 +376,14 @@ void add_picture_options(CLI::App& command, SceneChanges& changes) {
   add_number(command, changes, "--termination-opacity", "A",
              "opacity at which a ray stops (default: 0.97)", opacity,
              [](Scene& scene, double v) { scene.render.termination_opacity = v; });
+  add_option(command, changes, "--style", "NAME",
+             "volume, spheres, ball-and-stick or volume+balls, in place of the scene's geometry",
+             read_style);
+  add_number(command, changes, "--ambient-occlusion", "N",
+             "rays a pixel for the ambient occlusion of balls and sticks (default: 16)",
+             {-1, 4096, true, "a whole number from 0 to 4096"}, [](Scene& scene, double v) {
+               scene.render.surface.occlusion_samples = static_cast<int>(v);
+             });
   add_option(command, changes, "--engine", "NAME",
              "sweep, coherent, direct or cells (default: sweep)", read_engine);
 }

@@ -14,8 +14,12 @@ namespace {
 constexpr std::size_t grain = 1 << 14;
 constexpr double max_entries_per_kernel = 32, max_cells_per_kernel = 4;
 
+bool is_in_a_field(const KernelSet& kernels, std::size_t i) {
+  return kernels.field_of(i) < kernels.fields.size();
+}
+
 double support_of(const KernelSet& kernels, std::size_t i) {
-  const std::size_t f = kernels.field.empty() ? 0 : kernels.field[i];
+  const std::size_t f = kernels.field_of(i);
   return kernels.fields[f].kernel.support() * kernels.radius[i];
 }
 
@@ -24,8 +28,9 @@ double typical_support(const KernelSet& kernels) {
   std::vector<double> supports;
   const std::size_t stride = 1 + kernels.size() / 65536;
   for (std::size_t i = 0; i < kernels.size(); i += stride) {
-    supports.push_back(support_of(kernels, i));
+    if (is_in_a_field(kernels, i)) supports.push_back(support_of(kernels, i));
   }
+  if (supports.empty()) return kernels.fields[0].max_radius * kernels.length_scale;
   const auto middle = supports.begin() + static_cast<std::ptrdiff_t>(supports.size() / 2);
   std::nth_element(supports.begin(), middle, supports.end());
   return *middle;
@@ -94,7 +99,7 @@ double entries_of(const KernelSet& kernels, const CellGrid& grid) {
       tbb::blocked_range<std::size_t>(0, kernels.size(), grain), 0.0,
       [&](const auto& range, double sum) {
         for (std::size_t k = range.begin(); k != range.end(); ++k) {
-          sum += cells_around(kernels, grid, k).entries();
+          if (is_in_a_field(kernels, k)) sum += cells_around(kernels, grid, k).entries();
         }
         return sum;
       },
@@ -129,6 +134,7 @@ CellGrid build_cell_grid(const KernelSet& kernels) {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, kernels.size(), grain),
                       [&](const auto& range) {
                         for (std::size_t k = range.begin(); k != range.end(); ++k) {
+                          if (!is_in_a_field(kernels, k)) continue;
                           for_cells(grid, cells_around(kernels, grid, k),
                                     [&](std::size_t cell) { visit(cell, k); });
                         }

@@ -52,7 +52,7 @@ struct CellKernels {
     if (field.size() < size) field.resize(2 * size);
     for (std::size_t i = 0; i < size; ++i) {
       const std::size_t k = list[std::min(i, list.size() - 1)];
-      const std::size_t f = kernels.field.empty() ? 0 : kernels.field[k];
+      const std::size_t f = kernels.field_of(k);
       x[i] = kernels.x[k];
       y[i] = kernels.y[k];
       z[i] = kernels.z[k];

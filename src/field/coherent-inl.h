@@ -108,7 +108,8 @@ HWY_INLINE std::uint64_t accumulate_leaf(const KernelSet& kernels,
   for (unsigned bits = placed.reaches; bits != 0; bits &= bits - 1) {
     const auto i = static_cast<std::size_t>(__builtin_ctz(bits));
     const std::size_t at = leaf * Bvh::leaf_size + i;
-    const std::size_t f = kernels.field.empty() ? 0 : kernels.field[at];
+    const std::size_t f = kernels.field_of(at);
+    if (f == kernels.fields.size()) continue;  // only drawn
     const FieldConstants& field = constants.fields[f];
     const float inverse_radius_sq = 1.0f / (kernels.radius[at] * kernels.radius[at]);
     const PlacedKernel kernel{placed.x[i],

@@ -100,7 +100,7 @@ HWY_NOINLINE void gather_kernels(const KernelSet& kernels, const SamplingConstan
         field =
             hn::PromoteTo(du, hn::LoadU(hn::Rebind<std::uint8_t, LaneTag>(), &kernels.field[at]));
       }
-      if (HWY_UNLIKELY(constants.num_groups > 1)) {
+      if (HWY_UNLIKELY(constants.choose_group)) {
         const auto groups = hn::GatherIndex(du, constants.group, hn::BitCast(di, field));
         reaches = hn::And(reaches, hn::RebindMask(d, hn::Eq(groups, hn::Set(du, group))));
       }

@@ -33,6 +33,7 @@ Bounds3d KernelSet::box() const {
   for (const FieldKernels& f : fields) {
     max_support = std::max(max_support, f.kernel.support() * f.max_radius);
   }
+  if (centers.empty()) return centers;
   return centers.extended(max_support);
 }
 
@@ -167,7 +168,7 @@ CommonValues set_fields(const std::vector<FieldSource>& fields,
   RadiusRange radius;
   WeightRange weight;
   set.fields.clear();
-  for (std::size_t f = 0; f < fields.size(); ++f) {
+  for (std::size_t f = 0; f < fields.size() && !fields[f].drawn_only; ++f) {
     const WeightRange weights = weight_range(fields[f], set.length_scale);
     set.fields.push_back(summarise(fields[f], ranges[f], weights, set.length_scale));
     if (fields[f].index.empty()) continue;
@@ -177,6 +178,7 @@ CommonValues set_fields(const std::vector<FieldSource>& fields,
     weight.add({static_cast<float>(weights.min * unit), static_cast<float>(weights.max * unit)});
   }
   CommonValues common;
+  if (set.fields.empty()) common = {0.0f, 0.0f};
   if (radius.min == radius.max) common.radius = radius.min;
   if (weight.min == weight.max) common.weight = static_cast<float>(weight.min);
   return common;
@@ -242,7 +244,7 @@ void allocate_kernels(std::size_t n, KernelSet& set) {
     std::fill(array.begin() + static_cast<std::ptrdiff_t>(n), array.end(), padding);
   };
   for (auto* array : {&set.x, &set.y, &set.z}) allocate(*array, far_away);
-  if (set.fields.size() > 1) allocate(set.field, std::uint8_t{0});
+  if (set.fields.size() > 1 || set.has_drawn_only) allocate(set.field, std::uint8_t{0});
 }
 
 /// Puts gathered kernels into the tree's order.
@@ -262,10 +264,12 @@ void place_kernels(std::span<const Sphere> spheres, const KernelOrder& order,
       set.y[i] = sphere.y;
       set.z[i] = sphere.z;
       if (radii) set.radius.at(i) = sphere.radius;
-      if (weights) {
+      if (weights && f < set.fields.size()) {
         const double weight =
             effective_weight(fields[f], k - order.begins[f], sphere.radius, set.length_scale);
         set.weight.at(i) = static_cast<float>(weight * set.fields[f].value_scale);
+      } else if (weights) {
+        set.weight.at(i) = 0;
       }
       if (!set.field.empty()) set.field[i] = static_cast<std::uint8_t>(f);
     }
@@ -285,17 +289,24 @@ constexpr double max_growth = 1.75;
 
 KernelSet build_kernel_set(const ParticleSet& particles, const std::vector<FieldSource>& fields,
                            KernelOrder* order) {
-  if (fields.size() > max_fields) {
+  if (std::count_if(fields.begin(), fields.end(), [](const FieldSource& source) {
+        return !source.drawn_only;
+      }) > static_cast<std::ptrdiff_t>(max_fields)) {
     throw Error(fmt::format("{} fields, expected at most {}", fields.size(), max_fields));
   }
   KernelSet set;
   set.origin = particles.origin;
-  Bounds3f box;
-  for (const FieldSource& source : fields) box.add(bounds_of(particles, source));
-  if (box.empty()) return set;
-  set_centers(particles, {Point3d(box.min), Point3d(box.max)}, set);
+  Bounds3f box, of_all;
+  for (const FieldSource& source : fields) {
+    const Bounds3f of_source = bounds_of(particles, source);
+    of_all.add(of_source);
+    if (!source.drawn_only) box.add(of_source);
+    set.has_drawn_only |= source.drawn_only;
+  }
+  if (of_all.empty()) return set;
+  if (!box.empty()) set_centers(particles, {Point3d(box.min), Point3d(box.max)}, set);
   const std::vector<RadiusRange> ranges = radius_ranges(fields);
-  set.length_scale = unit_scale(largest_length(set.centers, ranges));
+  set.length_scale = unit_scale(largest_length({Point3d(of_all.min), Point3d(of_all.max)}, ranges));
   const CommonValues common = set_fields(fields, ranges, set);
 
   // Kernels in leaf order, padded to whole leaves.
@@ -323,6 +334,7 @@ bool refit_kernel_set(const ParticleSet& particles, const std::vector<FieldSourc
                       const KernelOrder& order, KernelSet& set) {
   const std::size_t n = set.size();
   if (n == 0 || order.kernels.size() != n || begins_of(fields) != order.begins) return false;
+  if (set.has_drawn_only || (!fields.empty() && fields.back().drawn_only)) return false;
   const std::vector<RadiusRange> ranges = radius_ranges(fields);
   allocate_values(n, set_fields(fields, ranges, set), set);
   place_kernels(gather(particles, fields, order.begins, static_cast<float>(set.length_scale)),

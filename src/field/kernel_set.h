@@ -47,13 +47,16 @@ struct KernelSet {
   double length_scale = 1;
   UninitializedVector<float> x, y, z;
   PerKernel radius, weight;
-  UninitializedVector<std::uint8_t>
-      field;  ///< index of each kernel's field; empty if there is only one field
+  /// Index of each kernel's field; empty if there is only one field. Particles that are only drawn
+  /// have the number of the fields.
+  UninitializedVector<std::uint8_t> field;
   std::vector<FieldKernels> fields;
-  Bounds3d centers;  ///< of all kernels; file's lengths, world axes
+  bool has_drawn_only = false;  ///< particles that no field has
+  Bounds3d centers;             ///< of all fields' kernels; file's lengths, world axes
   Bvh bvh;
 
   std::size_t size() const { return bvh.num_particles; }
+  std::size_t field_of(std::size_t i) const { return field.empty() ? 0 : field[i]; }
   /// Bytes of the per-particle arrays.
   std::size_t particle_bytes() const;
   /// The volume's box: centres extended by the largest support radius; file's lengths, world axes.
@@ -68,8 +71,9 @@ struct KernelOrder {
   double leaf_area = 0;             ///< of the tree when it was built
 };
 
-/// Gathers the fields' particles and builds the tree; keeps what refit_kernel_set() takes in
-/// `order` if that is not null. Throws Error for too many fields or kernels.
+/// Gathers the fields' particles, and those that are only drawn, and builds the tree; keeps what
+/// refit_kernel_set() takes in `order` if that is not null. Throws Error for too many fields or
+/// kernels.
 KernelSet build_kernel_set(const ParticleSet& particles, const std::vector<FieldSource>& fields,
                            KernelOrder* order = nullptr);
 

@@ -27,7 +27,8 @@ void add_leaf(const KernelSet& kernels, std::size_t leaf, const Point3d& p, Fiel
   const std::size_t begin = leaf * Bvh::leaf_size;
   const std::size_t end = std::min(begin + Bvh::leaf_size, kernels.size());
   for (std::size_t i = begin; i < end; ++i) {
-    const std::size_t f = kernels.field.empty() ? 0 : kernels.field[i];
+    const std::size_t f = kernels.field_of(i);
+    if (f == kernels.fields.size()) continue;  // only drawn
     const double radius = kernels.radius[i];
     const Vector3d d = p - Point3d{kernels.x[i], kernels.y[i], kernels.z[i]};
     const RadialValue phi = evaluate(kernels.fields[f].kernel, length(d) / radius);

@@ -65,9 +65,11 @@ struct SamplingConstants {
   const FieldKernels* kernels[max_fields];  ///< of the fields
   float max_support_factor = 0;
   /// Fields whose kernels have one shape are a group: its number, one a field, and its first field.
-  std::uint32_t group[max_fields];
+  /// (That of particles that are only drawn, behind the fields, is none.)
+  std::uint32_t group[max_fields + 1];
   std::uint32_t first_field[max_fields];
   std::uint32_t num_groups = 0;
+  bool choose_group = false;  ///< not all particles are of group 0
 
   KernelType type(std::uint32_t group_number) const {
     return kernels[first_field[group_number]]->kernel.shape.type;
@@ -102,6 +104,8 @@ inline SamplingConstants make_constants(const KernelSet& kernels) {
       constants.first_field[constants.num_groups++] = static_cast<std::uint32_t>(f);
     }
   }
+  constants.group[kernels.fields.size()] = max_fields + 1;
+  constants.choose_group = constants.num_groups > 1 || kernels.has_drawn_only;
   return constants;
 }
 

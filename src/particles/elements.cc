@@ -3,6 +3,7 @@
 
 #include <cctype>
 #include <cmath>
+#include <gemmi/elem.hpp>
 #include <string>
 
 namespace motes {
@@ -162,6 +163,10 @@ const Element* element_by_mass(double mass) {
     }
   }
   return nearest;
+}
+
+float van_der_waals_radius(const Element& element) {
+  return gemmi::vdw_radius(static_cast<gemmi::El>(element.number));
 }
 
 }  // namespace motes

@@ -15,6 +15,10 @@ struct Element {
   std::array<std::uint8_t, 3> color;  ///< sRGB, the customary colour in molecular pictures
 };
 
+/// Angstrom: Mantina et al. (2009), Bondi (1964); where neither has one, the table of cctbx, all as
+/// gemmi gives them.
+float van_der_waals_radius(const Element& element);
+
 /// The element that a species' name begins with, or null. Case does not matter. The symbol may be
 /// followed by digits, charge signs and marks ("Si1", "O2-", "Fe3+", "H*") and by a suffix after an
 /// underscore ("C_R"); any other letter makes it another word: "water" is not tungsten.

@@ -16,7 +16,9 @@
 
 #include "core/error.h"
 #include "core/stopwatch.h"
+#include "render/make_surface.h"
 #include "render/render_tile.h"
+#include "render/surface_layers.h"
 #include "samples/area_buffer.h"
 
 namespace motes {
@@ -125,38 +127,117 @@ FrameContext make_context(const KernelSet& kernels, const ResolvedScene& scene,
 /// tree once for all of a large one.
 int tile_size_of(Engine engine) { return engine == Engine::sweep ? AreaBuffer::size : 32; }
 
+/// Of a pixel's surfaces those within so many steps are one layer: less than the volume between
+/// them shows.
+constexpr double merged_steps = 0.1;
+
+SurfaceFrame frame_of(const Surface& surface, const ResolvedScene& scene) {
+  const KernelSet& kernels = *surface.kernels;
+  const SurfaceSettings& settings = scene.render.surface;
+  const bool orthographic = scene.camera.orthographic_height.has_value();
+  ImagePlane plane;
+  plane.half_height = orthographic
+                          ? 0.5 * *scene.camera.orthographic_height * kernels.length_scale
+                          : std::tan(0.5 * scene.camera.fov_degrees * std::numbers::pi / 180);
+  plane.width = scene.render.width;
+  plane.height = scene.render.height;
+  plane.half_width = plane.half_height * plane.width / plane.height;
+  plane.samples = settings.antialiasing;
+  SurfaceShading shading;
+  shading.lighting = scene.render.lighting;
+  shading.occlusion_samples = settings.occlusion_samples;
+  if (settings.occlusion_distance) {
+    shading.occlusion_distance = *settings.occlusion_distance * kernels.length_scale;
+  }
+  shading.shadows = settings.shadows;
+  shading.light_radius = 0.5 * settings.light_angle * std::numbers::pi / 180;
+  return make_surface_frame(
+      surface, {camera_axes(scene.camera), to_internal(kernels, scene.camera.eye), orthographic},
+      plane, shading);
+}
+
+/// Calls work(tile) for all tiles of the image, in parallel.
+template <class Work>
+void for_tiles(const ResolvedScene& scene, const RenderOptions& options, int tile_size,
+               const Work& work) {
+  const int width = scene.render.width, height = scene.render.height;
+  const int columns = (width + tile_size - 1) / tile_size;
+  const int rows = (height + tile_size - 1) / tile_size;
+  const int machine = tbb::info::default_concurrency();
+  const int threads = options.threads > 0 ? options.threads : machine;
+  int done = 0;
+  std::mutex mutex;
+  // TBB starts no more threads than the machine has, unless it is told to.
+  const tbb::global_control parallelism(tbb::global_control::max_allowed_parallelism,
+                                        static_cast<std::size_t>(std::max(threads, machine)));
+  tbb::task_arena arena(threads);
+  arena.execute([&] {
+    tbb::parallel_for(0, columns * rows, [&](int i) {
+      const int x = i % columns * tile_size, y = i / columns * tile_size;
+      work(Tile{x, y, std::min(tile_size, width - x), std::min(tile_size, height - y)});
+      const std::lock_guard lock(mutex);
+      ++done;
+      if (options.progress != nullptr) {
+        options.progress->update("rendering", static_cast<double>(done) / (columns * rows));
+      }
+    });
+  });
+}
+
 }  // namespace
 
-Renderer::Renderer(const ParticleSet& particles, const std::vector<FieldSource>& fields) {
+Renderer::Renderer(const ParticleSet& particles, const std::vector<FieldSource>& fields,
+                   const GeometrySource& geometry) {
   const Stopwatch stopwatch;
-  kernels_ = build_kernel_set(particles, fields);
+  if (geometry.empty()) {
+    *kernels_ = build_kernel_set(particles, fields);
+  } else {
+    build(particles, fields, geometry);
+    order_ = {};
+  }
   build_ms_ = stopwatch.milliseconds();
 }
 
+void Renderer::build(const ParticleSet& particles, const std::vector<FieldSource>& fields,
+                     const GeometrySource& geometry) {
+  surface_.reset();
+  *kernels_ = {};  // its memory is free before the new one needs it
+  const auto build_from = [&](const std::vector<FieldSource>& sources) {
+    *kernels_ = build_kernel_set(particles, sources, &order_);
+    if (geometry.empty()) return;
+    surface_ = make_surface(particles, geometry, sources, order_, *kernels_);
+  };
+  const std::optional<FieldSource> drawn_only = find_drawn_only(particles, geometry, fields);
+  if (!drawn_only) return build_from(fields);
+  std::vector<FieldSource> sources = fields;
+  sources.push_back(*drawn_only);
+  build_from(sources);
+}
+
 TreeUpdate Renderer::set_particles(const ParticleSet& particles,
-                                   const std::vector<FieldSource>& fields) {
+                                   const std::vector<FieldSource>& fields,
+                                   const GeometrySource& geometry) {
   const Stopwatch stopwatch;
   cells_.reset();
   TreeUpdate update = TreeUpdate::refitted;
-  if (!refit_kernel_set(particles, fields, order_, kernels_)) {
+  if (!geometry.empty() || surface_ || !refit_kernel_set(particles, fields, order_, *kernels_)) {
     update = TreeUpdate::rebuilt;
-    kernels_ = {};  // its memory is free before the new one needs it
-    kernels_ = build_kernel_set(particles, fields, &order_);
+    build(particles, fields, geometry);
   }
   build_ms_ = stopwatch.milliseconds();
   return update;
 }
 
 void Renderer::prepare(Engine engine) {
-  if (engine == Engine::cells && !cells_ && kernels_.size() != 0) {
-    cells_ = build_cell_grid(kernels_);
+  if (engine == Engine::cells && !cells_ && kernels_->size() != 0) {
+    cells_ = build_cell_grid(*kernels_);
   }
 }
 
 void Renderer::set_kernel(std::size_t field, const Kernel& kernel) {
   cells_.reset();
-  assert(field < kernels_.fields.size());
-  kernels_.fields[field].set_kernel(kernel);
+  assert(field < kernels_->fields.size());
+  kernels_->fields[field].set_kernel(kernel);
 }
 
 Framebuffer Renderer::render(const ResolvedScene& scene, const RenderOptions& options,
@@ -168,8 +249,7 @@ Framebuffer Renderer::render(const ResolvedScene& scene, const RenderOptions& op
 
 void Renderer::render(const ResolvedScene& scene, const RenderOptions& options, Framebuffer& image,
                       RenderStatistics* statistics) const {
-  assert(scene.transfer_functions.size() == kernels_.fields.size());
-  assert(scene.step_size > 0);
+  assert(scene.transfer_functions.size() == kernels_->fields.size());
   const std::string target = instruction_set();
   const Stopwatch stopwatch;
   if (image.width != scene.render.width || image.height != scene.render.height) {
@@ -177,38 +257,35 @@ void Renderer::render(const ResolvedScene& scene, const RenderOptions& options, 
   }
   const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
   TileCounts all;
-  if (kernels_.size() == 0) {
+  std::optional<SurfaceFrame> surface;
+  if (surface_) surface = frame_of(*surface_, scene);
+  if (kernels_->fields.empty() || kernels_->size() == 0) {
     std::fill(image.rgba.begin(), image.rgba.end(), 0.0f);
+    if (surface) {
+      for_tiles(scene, options, AreaBuffer::size, [&](const Tile& tile) {
+        static thread_local TileLayers layers;
+        find_layers(*surface, 0, tile, layers);
+        composite_layers(layers, tile, image);
+      });
+    }
   } else {
-    FrameContext context = make_context(kernels_, scene, options);
+    FrameContext context = make_context(*kernels_, scene, options);
+    if (surface) {
+      const double thickness = merged_steps * context.view.planes.step;
+      context.layers = [&surface, thickness](const Tile& tile, TileLayers& out) {
+        find_layers(*surface, thickness, tile, out);
+      };
+    }
     std::optional<CellGrid> own_cells;
     if (context.engine == Engine::cells) {
-      if (!cells_) own_cells = build_cell_grid(kernels_);
+      if (!cells_) own_cells = build_cell_grid(*kernels_);
       context.cells = cells_ ? &*cells_ : &*own_cells;
     }
-    const int tile_size = tile_size_of(context.engine);
-    const int columns = (context.width + tile_size - 1) / tile_size;
-    const int rows = (context.height + tile_size - 1) / tile_size;
-    int done = 0;
     std::mutex mutex;
-    // TBB starts no more threads than the machine has, unless it is told to.
-    const tbb::global_control parallelism(
-        tbb::global_control::max_allowed_parallelism,
-        static_cast<std::size_t>(std::max(threads, tbb::info::default_concurrency())));
-    tbb::task_arena arena(threads);
-    arena.execute([&] {
-      tbb::parallel_for(0, columns * rows, [&](int i) {
-        const int x = i % columns * tile_size, y = i / columns * tile_size;
-        const Tile tile{x, y, std::min(tile_size, context.width - x),
-                        std::min(tile_size, context.height - y)};
-        const TileCounts counts = render_tile(context, tile, image);
-        const std::lock_guard lock(mutex);
-        all.add(counts);
-        ++done;
-        if (options.progress != nullptr) {
-          options.progress->update("rendering", static_cast<double>(done) / (columns * rows));
-        }
-      });
+    for_tiles(scene, options, tile_size_of(context.engine), [&](const Tile& tile) {
+      const TileCounts counts = render_tile(context, tile, image);
+      const std::lock_guard lock(mutex);
+      all.add(counts);
     });
   }
   if (statistics != nullptr) {

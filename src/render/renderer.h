@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,6 +15,7 @@
 #include "render/layer_source.h"
 #include "render/stages.h"
 #include "scene/scene.h"
+#include "surface/surface.h"
 
 namespace motes {
 
@@ -48,8 +50,10 @@ enum class TreeUpdate { refitted, rebuilt };
 
 class Renderer {
  public:
-  /// Gathers the fields' kernels and builds the tree; needs neither argument afterwards.
-  Renderer(const ParticleSet& particles, const std::vector<FieldSource>& fields);
+  /// Gathers the fields' kernels and what is drawn of `geometry`, and builds the tree; needs none
+  /// of the arguments afterwards.
+  Renderer(const ParticleSet& particles, const std::vector<FieldSource>& fields,
+           const GeometrySource& geometry = {});
 
   /// The picture: linear, premultiplied. The scene's transfer functions are one a field of the
   /// constructor's; its `fields` are not looked at, so kernel_scale and support_factor come from
@@ -65,7 +69,8 @@ class Renderer {
   /// long as the fields keep their numbers of particles and the tree has not lost its worth; else,
   /// and the first time, builds it anew, which from then on keeps 4 more bytes a particle. Needs
   /// neither argument afterwards. Throws what the constructor throws.
-  TreeUpdate set_particles(const ParticleSet& particles, const std::vector<FieldSource>& fields);
+  TreeUpdate set_particles(const ParticleSet& particles, const std::vector<FieldSource>& fields,
+                           const GeometrySource& geometry = {});
 
   /// Makes ready what `engine` needs besides the tree. render() does so itself, for its frame
   /// alone.
@@ -74,12 +79,18 @@ class Renderer {
   /// Changes sigma and kappa of a field; the tree stays.
   void set_kernel(std::size_t field, const Kernel& kernel);
 
-  const KernelSet& kernels() const { return kernels_; }
+  const KernelSet& kernels() const { return *kernels_; }
+  /// Bytes of balls and sticks besides those of kernels().
+  std::size_t surface_bytes() const { return surface_ ? surface_->bytes() : 0; }
   /// Time that the last build or refit took.
   double build_ms() const { return build_ms_; }
 
  private:
-  KernelSet kernels_;
+  void build(const ParticleSet& particles, const std::vector<FieldSource>& fields,
+             const GeometrySource& geometry);
+
+  std::unique_ptr<KernelSet> kernels_ = std::make_unique<KernelSet>();  ///< stays where it is
+  std::optional<Surface> surface_;
   KernelOrder order_;  ///< empty until particles move
   std::optional<CellGrid> cells_;
   double build_ms_ = 0;

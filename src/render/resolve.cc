@@ -20,12 +20,19 @@ bool is_open(const Field& field) {
 
 ResolvedScene resolve(const Scene& scene, const ParticleSet& particles,
                       const std::vector<Field>& fields, const std::vector<FieldSource>& sources,
-                      const KernelSet& kernels, Progress* progress) {
+                      const GeometrySource& geometry, const KernelSet& kernels,
+                      Progress* progress) {
   ResolvedScene resolved;
   resolved.render = scene.render;
   const double aspect = static_cast<double>(scene.render.width) / scene.render.height;
-  resolved.camera = fit_camera(scene, visible_spheres(particles, sources), aspect);
-  resolved.step_size = scene.render.step_size.value_or(default_step_size(sources, kernels.box()));
+  resolved.camera = fit_camera(scene, visible_spheres(particles, sources, geometry), aspect);
+  // Without fields nothing is sampled.
+  resolved.step_size = 1;
+  if (scene.render.step_size) {
+    resolved.step_size = *scene.render.step_size;
+  } else if (!fields.empty()) {
+    resolved.step_size = default_step_size(sources, kernels.box());
+  }
   // Without rays where nothing is left to fit: it would be work for nothing.
   std::vector<RayProfiles> profiles(fields.size(), RayProfiles{{}, {0}, {}});
   if (std::any_of(fields.begin(), fields.end(), is_open)) {

@@ -9,11 +9,13 @@
 
 namespace motes {
 
-/// Fills in what `scene` leaves open: camera and step size from the fields, transfer functions from
-/// what the view shows of them. `fields` are those that the scene comes to (expand_fields()),
-/// `sources` and `kernels` theirs. Throws Error for a camera or a transfer function that cannot be.
+/// Fills in what `scene` leaves open: camera from the fields and `geometry`, step size from the
+/// fields, transfer functions from what the view shows of them. `fields` are those that the scene
+/// comes to (expand_fields()), `sources` and `kernels` theirs. Throws Error for a camera or a
+/// transfer function that cannot be.
 ResolvedScene resolve(const Scene& scene, const ParticleSet& particles,
                       const std::vector<Field>& fields, const std::vector<FieldSource>& sources,
-                      const KernelSet& kernels, Progress* progress = nullptr);
+                      const GeometrySource& geometry, const KernelSet& kernels,
+                      Progress* progress = nullptr);
 
 }  // namespace motes

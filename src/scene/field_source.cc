@@ -59,13 +59,6 @@ std::vector<std::string> property_names(const ParticleSet& particles) {
   return names;
 }
 
-/// Throws Error for an unknown name.
-const Property& property_named(const ParticleSet& particles, const std::string& name) {
-  const Property* property = particles.find_property(name);
-  if (property == nullptr) throw unknown_name("property", name, property_names(particles));
-  return *property;
-}
-
 /// Values of all particles, one a particle or one for all. `key` is the field's, for messages.
 std::vector<float> values_of(const ParticleSet& particles, const NumberOrProperty& source,
                              std::string_view key) {
@@ -114,10 +107,6 @@ std::vector<float> gather(const std::vector<float>& values,
 constexpr std::size_t max_colored_species = 8;
 
 Color species_color(const ParticleSet& particles, const std::vector<std::uint32_t>& index) {
-  // For species that are no elements: colours that are easily told apart, also by colour-blind
-  // people (Okabe and Ito 2008).
-  constexpr std::uint32_t other_colors[] = {0xe69f00, 0x56b4e9, 0x009e73, 0xf0e442,
-                                            0x0072b2, 0xd55e00, 0xcc79a7};
   if (particles.species.empty()) return {1, 1, 1};
   std::vector<std::size_t> count(particles.species_names.size());
   for (const std::uint32_t i : index) ++count[particles.species[i]];
@@ -127,10 +116,16 @@ Color species_color(const ParticleSet& particles, const std::vector<std::uint32_
     const auto& c = element->color;
     return color_from_srgb(std::uint32_t{c[0]} << 16 | std::uint32_t{c[1]} << 8 | c[2]);
   }
-  return color_from_srgb(other_colors[most % std::size(other_colors)]);
+  return color_from_srgb(other_species_color(most));
 }
 
 }  // namespace
+
+const Property& property_named(const ParticleSet& particles, const std::string& name) {
+  const Property* property = particles.find_property(name);
+  if (property == nullptr) throw unknown_name("property", name, property_names(particles));
+  return *property;
+}
 
 std::vector<std::uint32_t> select_particles(const ParticleSet& particles, const Selection& select) {
   std::vector<std::uint32_t> index;
@@ -272,7 +267,7 @@ std::vector<FieldSource> make_field_sources(const ParticleSet& particles,
 }
 
 void color_by_species(Scene& scene, const ParticleSet& particles) {
-  if (has_sizes(particles)) return;
+  if (has_sizes(particles) || (scene.fields.empty() && !scene.geometry.empty())) return;
   std::vector<bool> present(particles.species_names.size());
   for (const std::uint16_t s : particles.species) present[s] = true;
   std::set<const Element*> elements;  // several species may be of one: C, C1, C2
@@ -331,7 +326,10 @@ void number_repeated_names(std::vector<Field>& fields) {
 std::vector<Field> expand_fields(const Scene& scene, const ParticleSet& particles) {
   check_names(scene.fields, particles);
   std::vector<Field> wanted = scene.fields;
-  if (wanted.empty()) wanted.emplace_back().name = "all";
+  if (wanted.empty()) {
+    if (!scene.geometry.empty()) return {};
+    wanted.emplace_back().name = "all";
+  }
   std::vector<Field> fields;
   for (std::size_t k = 0; k < wanted.size(); ++k) {
     Field& field = wanted[k];

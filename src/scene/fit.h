@@ -19,8 +19,10 @@ struct VisibleSphere {
 /// The fields' particles, or some of them where there are very many, each as large as its Gaussian
 /// is easily seen; those that are far larger than is typical (in the voids of a cosmological box)
 /// are taken for smaller.
+/// With them the balls of `geometry`.
 std::vector<VisibleSphere> visible_spheres(const ParticleSet& particles,
-                                           const std::vector<FieldSource>& fields);
+                                           const std::vector<FieldSource>& fields,
+                                           const GeometrySource& geometry = {});
 
 /// The scene's camera; what it leaves open is fitted so that the spheres just fill an image of
 /// `aspect` = width / height. The view is oblique, mostly along their box's thinnest axis, so that

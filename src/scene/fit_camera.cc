@@ -92,7 +92,8 @@ Bounds3d box_of(const std::vector<VisibleSphere>& spheres) {
 }  // namespace
 
 std::vector<VisibleSphere> visible_spheres(const ParticleSet& particles,
-                                           const std::vector<FieldSource>& fields) {
+                                           const std::vector<FieldSource>& fields,
+                                           const GeometrySource& geometry) {
   std::vector<VisibleSphere> spheres;
   std::mt19937 random(1);  // evenly many would beat with a lattice
   for (const FieldSource& field : fields) {
@@ -103,6 +104,11 @@ std::vector<VisibleSphere> visible_spheres(const ParticleSet& particles,
       const std::size_t i = std::min(begin + random() % stride, field.index.size() - 1);
       spheres.push_back({particles.position(field.index[i]), extent * field.width_of(i)});
     }
+  }
+  const std::size_t stride = 1 + geometry.index.size() / particles_looked_at;
+  for (std::size_t begin = 0; begin < geometry.index.size(); begin += stride) {
+    const std::size_t i = std::min(begin + random() % stride, geometry.index.size() - 1);
+    spheres.push_back({particles.position(geometry.index[i]), geometry.radius[i]});
   }
   std::vector<double> radii(spheres.size());
   std::transform(spheres.begin(), spheres.end(), radii.begin(),

@@ -17,18 +17,12 @@
 #include "core/report.h"
 #include "particles/particle_set.h"
 #include "scene/camera.h"
+#include "scene/geometry.h"
 #include "scene/kernel.h"
+#include "scene/selection.h"
 #include "scene/transfer_function.h"
 
 namespace motes {
-
-/// Which particles a field takes; all that is given must hold.
-struct Selection {
-  std::vector<std::string> species;
-  std::optional<std::pair<std::uint64_t, std::uint64_t>> index;  ///< first and last, both included
-  std::string expression;  ///< over properties: "z > 3 && species == 'Si'"
-  bool operator==(const Selection&) const = default;
-};
 
 /// A number for all particles, or the name of a property.
 using NumberOrProperty = std::variant<double, std::string>;
@@ -75,11 +69,23 @@ enum class Engine { sweep, coherent, direct, cells };
 Engine engine_from_name(std::string_view name);
 std::string_view name_of(Engine engine);
 
+/// How balls and sticks are lit and drawn besides the lighting of the scene (docs/surface.md).
+struct SurfaceSettings {
+  int antialiasing = 3;        ///< n x n rays a pixel
+  int occlusion_samples = 16;  ///< rays a pixel; 0: no ambient occlusion
+  std::optional<double>
+      occlusion_distance;  ///< what is farther away occludes nothing; file's length
+  bool shadows = true;     ///< if the lighting has a direction
+  double light_angle = 3;  ///< how large the light is seen, degrees; 0: hard shadows
+  bool operator==(const SurfaceSettings&) const = default;
+};
+
 struct RenderSettings {
   int width = 1024, height = 1024;
   std::optional<double> step_size;  ///< length; nullopt: from the radii
   double termination_opacity = 0.97;
   Lighting lighting;
+  SurfaceSettings surface;
   Color background;
   Engine engine = Engine::sweep;
   bool operator==(const RenderSettings&) const = default;
@@ -93,7 +99,9 @@ struct Scene {
   std::optional<Vector3d> up;
   std::optional<double> fov_degrees, orthographic_height;
   Kernel kernel;
-  std::vector<Field> fields;  ///< empty: one field of all particles, or as the data suggest
+  /// Empty: none if there is geometry, else one of all particles, or as the data suggest.
+  std::vector<Field> fields;
+  std::vector<Geometry> geometry;
   RenderSettings render;
   bool operator==(const Scene&) const = default;
 };
@@ -111,6 +119,8 @@ struct FieldSource {
   std::vector<float> radius;
   std::vector<float> weight;  ///< one an index, or one for all
   Color species_color;        ///< display colour of the species that most of its particles are
+  /// No field: particles that the tree has only since they are drawn. The last of the sources.
+  bool drawn_only = false;
 
   float radius_of(std::size_t i) const { return radius[radius.size() == 1 ? 0 : i]; }
   /// Standard deviation of the kernel's shape: how wide the particle looks.
@@ -139,10 +149,6 @@ std::variant<std::monostate, TransferFunction, NamedTransferFunction> read_trans
     const std::filesystem::path& path);
 /// Scene as JSON that read_scene() reads back to an equal Scene; data_path relative to `directory`.
 std::string scene_to_json(const Scene& scene, const std::filesystem::path& directory);
-
-/// What `select` takes of `particles`: indices, increasing. Throws Error for unknown species,
-/// properties or a bad expression, naming what there is.
-std::vector<std::uint32_t> select_particles(const ParticleSet& particles, const Selection& select);
 
 /// Gives a scene whose one field takes all particles and has no transfer function (or that has no
 /// field) the species' colours, where all species are elements, two to eight different ones, and no

@@ -9,8 +9,8 @@
 #include <set>
 
 #include "core/error.h"
-#include "particles/selection.h"
 #include "scene/checked_json.h"
+#include "scene/geometry_json.h"
 #include "scene/scene.h"
 
 namespace motes {
@@ -96,35 +96,6 @@ decltype(Field::transfer_function) read_transfer_function(const Value& value) {
   }
   value.check_keys({"points", "name", "range", "extinction", "scale"});
   value.expected("the key \"points\" or \"name\"");
-}
-
-Selection read_selection(const Value& value) {
-  value.check_keys({"species", "index", "expression"});
-  Selection select;
-  value.with("species", [&](const Value& v) {
-    if (v.raw().is_string()) {
-      select.species = {v.text("the name of a species")};
-      return;
-    }
-    const auto items = v.array("an array of names");
-    if (items.empty()) v.expected("an array of at least one name");
-    for (const Value& item : items) select.species.push_back(item.text("the name of a species"));
-  });
-  value.with("index", [&](const Value& v) {
-    const auto ends = v.array_of(2, "an array of two whole numbers, first and last");
-    constexpr auto most = std::numeric_limits<std::uint64_t>::max();
-    select.index = {ends[0].integer(0, most), ends[1].integer(0, most)};
-    if (select.index->first > select.index->second) v.fail("expected first <= last");
-  });
-  value.with("expression", [&](const Value& v) {
-    select.expression = v.text("an expression over properties");
-    try {
-      check_expression(select.expression);
-    } catch (const Error& error) {
-      v.fail(error.what());
-    }
-  });
-  return select;
 }
 
 NumberOrProperty read_number_or_property(const Value& value, bool positive) {
@@ -286,7 +257,7 @@ Lighting read_lighting(const Value& value) {
 
 void read_render(const Value& value, RenderSettings& render) {
   value.check_keys(
-      {"size", "step_size", "termination_opacity", "lighting", "background", "engine"});
+      {"size", "step_size", "termination_opacity", "lighting", "surface", "background", "engine"});
   value.with("size", [&](const Value& v) {
     const auto sides = v.array_of(2, "an array of two whole numbers, width and height");
     render.width = static_cast<int>(sides[0].integer(1, max_image_side));
@@ -300,6 +271,7 @@ void read_render(const Value& value, RenderSettings& render) {
     render.termination_opacity = v.number();
   });
   value.with("lighting", [&](const Value& v) { render.lighting = read_lighting(v); });
+  value.with("surface", [&](const Value& v) { render.surface = read_surface_settings(v); });
   value.with("background", [&](const Value& v) {
     const Color color = render.background = v.color();
     if (std::max({color.r, color.g, color.b}) > 1) {
@@ -328,7 +300,7 @@ void check_support_factors(const Value& fields, const Scene& scene) {
 
 Scene read_root(const json& root, const std::filesystem::path& directory) {
   const Value value(root, "");
-  value.check_keys({"version", "data", "camera", "kernel", "fields", "render"});
+  value.check_keys({"version", "data", "camera", "kernel", "fields", "geometry", "render"});
   const Value version = value.at("version");
   if (version.raw() != json(1)) version.expected("1, the only version there is");
   Scene scene;
@@ -344,6 +316,7 @@ Scene read_root(const json& root, const std::filesystem::path& directory) {
     read_fields(v, directory, scene);
     check_support_factors(v, scene);
   });
+  value.with("geometry", [&](const Value& v) { scene.geometry = read_geometry(v); });
   value.with("render", [&](const Value& v) { read_render(v, scene.render); });
   return scene;
 }

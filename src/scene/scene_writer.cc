@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "scene/geometry_json.h"
 #include "scene/scene.h"
 
 namespace motes {
@@ -14,17 +15,6 @@ namespace {
 using json = nlohmann::ordered_json;
 
 json vector_to_json(double x, double y, double z) { return json::array({x, y, z}); }
-
-/// "#rrggbb" where that is exactly the colour, else three linear numbers.
-json color_to_json(const Color& color) {
-  const auto level = [](float channel) {
-    return static_cast<std::uint32_t>(
-        std::lround(255 * linear_to_srgb(std::clamp(static_cast<double>(channel), 0.0, 1.0))));
-  };
-  const std::uint32_t srgb = level(color.r) << 16 | level(color.g) << 8 | level(color.b);
-  if (color_from_srgb(srgb) == color) return fmt::format("#{:06x}", srgb);
-  return vector_to_json(color.r, color.g, color.b);
-}
 
 json number_or_property_to_json(const NumberOrProperty& value) {
   return std::visit([](const auto& v) { return json(v); }, value);
@@ -50,14 +40,6 @@ json to_json(const NamedTransferFunction& named) {
   if (named.range) out["range"] = {named.range->first, named.range->second};
   if (named.extinction) out["extinction"] = *named.extinction;
   if (named.log_scale) out["scale"] = *named.log_scale ? "log" : "linear";
-  return out;
-}
-
-json to_json(const Selection& select) {
-  json out = json::object();
-  if (!select.species.empty()) out["species"] = select.species;
-  if (select.index) out["index"] = {select.index->first, select.index->second};
-  if (!select.expression.empty()) out["expression"] = select.expression;
   return out;
 }
 
@@ -106,6 +88,7 @@ json to_json(const RenderSettings& render) {
   if (const auto& d = lighting.direction) {
     out["lighting"]["direction"] = vector_to_json(d->x, d->y, d->z);
   }
+  if (render.surface != SurfaceSettings{}) out["surface"] = to_json(render.surface);
   out["background"] = color_to_json(render.background);
   out["engine"] = name_of(render.engine);
   return out;
@@ -176,6 +159,10 @@ std::string scene_to_json(const Scene& scene, const std::filesystem::path& direc
   if (!scene.fields.empty()) {
     root["fields"] = json::array();
     for (const Field& field : scene.fields) root["fields"].push_back(to_json(field, directory));
+  }
+  if (!scene.geometry.empty()) {
+    root["geometry"] = json::array();
+    for (const Geometry& item : scene.geometry) root["geometry"].push_back(to_json(item));
   }
   root["render"] = to_json(scene.render);
   try {

@@ -75,6 +75,14 @@ Color color_from_srgb(std::uint32_t rrggbb) {
   return {channel(16), channel(8), channel(0)};
 }
 
+std::uint32_t color_to_srgb(const Color& color) {
+  const auto level = [](float channel) {
+    return static_cast<std::uint32_t>(
+        std::lround(255 * linear_to_srgb(std::clamp(static_cast<double>(channel), 0.0, 1.0))));
+  };
+  return level(color.r) << 16 | level(color.g) << 8 | level(color.b);
+}
+
 std::optional<Color> color_from_text(std::string_view text) {
   if (text == "black") return Color{0, 0, 0};
   if (text == "white") return Color{1, 1, 1};

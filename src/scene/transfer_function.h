@@ -32,6 +32,9 @@ const std::vector<std::string>& color_map_names();
 /// 0xrrggbb, sRGB-encoded, as a linear colour.
 Color color_from_srgb(std::uint32_t rrggbb);
 
+/// The nearest 0xrrggbb; channels are clamped to [0, 1].
+std::uint32_t color_to_srgb(const Color& color);
+
 /// "#rrggbb", "black" or "white" as a linear colour; nullopt for any other text.
 std::optional<Color> color_from_text(std::string_view text);
 

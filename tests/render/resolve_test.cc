@@ -22,7 +22,7 @@ class Resolve : public testing::Test {
  protected:
   Resolve() { fields_[0].name = "all"; }
   ResolvedScene resolve_scene(Progress* progress = nullptr) const {
-    return resolve(scene_, particles_, fields_, sources_, kernels_, progress);
+    return resolve(scene_, particles_, fields_, sources_, {}, kernels_, progress);
   }
 
   const ParticleSet particles_ = particles_at({{-3, 0, 0}, {3, 0, 0}});
@@ -74,7 +74,7 @@ TEST_F(Resolve, KeepsWhatTheSceneSaysWithoutLookingAtTheData) {
   scene_.render.step_size = 0.125;
   const std::vector<FieldSource> sources{sources_[0], sources_[0]};
   CountedUpdates progress;
-  const ResolvedScene resolved = resolve(scene_, particles_, fields_, sources,
+  const ResolvedScene resolved = resolve(scene_, particles_, fields_, sources, {},
                                          build_kernel_set(particles_, sources), &progress);
   EXPECT_EQ(resolved.camera.eye, scene_.eye);
   EXPECT_EQ(resolved.camera.target, scene_.target);

@@ -332,6 +332,19 @@ RC_GTEST_PROP(SceneToJson, ReadsBackEqual, ()) {
     scene.orthographic_height = maybe([] { return random_double(1, 999); });
   }
   for (int n = *rc::gen::inRange(0, 4); n > 0; --n) scene.fields.push_back(random_field(n));
+  if (*rc::gen::arbitrary<bool>()) {
+    Geometry balls, sticks;
+    balls.select.species = {random_text()};
+    balls.radius = *rc::gen::element<decltype(Geometry::radius)>(ElementRadius::covalent, 2.5,
+                                                                 std::string("size"));
+    balls.color = *rc::gen::element<decltype(Geometry::color)>(
+        ColorBy::species, Color{0.25F, 0, 1}, ColorByProperty{"v", "magma", {{1, 2}}});
+    sticks.type = Geometry::Type::sticks;
+    sticks.radius = 0.25;
+    sticks.bonds = BondSource::distance;
+    scene.geometry = {balls, sticks};
+    scene.render.surface = {2, 64, 3.5, false, 0};
+  }
   scene.kernel = {random_double(1, 30), random_double(-30, 30)};
   if (*rc::gen::arbitrary<bool>()) {
     scene.kernel = {.kernel_scale = 3, .shape = {KernelType::wendland_c4, {}}};

@@ -1,0 +1,116 @@
+#include "render/make_surface.h"
+
+#include <algorithm>
+#include <limits>
+#include <unordered_map>
+#include <utility>
+
+#include "scene/transfer_function.h"
+#include "surface/make_sticks.h"
+
+namespace motes {
+namespace {
+
+constexpr std::uint32_t not_drawn = std::numeric_limits<std::uint32_t>::max();
+
+/// For each kernel its number among the drawn particles, once for each of these.
+UninitializedVector<std::uint32_t> find_drawn(
+    const ParticleSet& particles, const GeometrySource& geometry,
+    const UninitializedVector<std::uint32_t>& particle_of) {
+  std::vector<std::uint32_t> number(particles.size(), not_drawn);
+  for (std::size_t k = 0; k < geometry.index.size(); ++k) {
+    number[geometry.index[k]] = static_cast<std::uint32_t>(k);
+  }
+  UninitializedVector<std::uint32_t> drawn(particle_of.size());
+  for (std::size_t i = 0; i < particle_of.size(); ++i) {
+    drawn[i] = std::exchange(number[particle_of[i]], not_drawn);
+  }
+  return drawn;
+}
+
+void set_radii(const GeometrySource& geometry, const UninitializedVector<std::uint32_t>& drawn,
+               double length_scale, Surface& surface) {
+  const auto scale = static_cast<float>(length_scale);
+  const auto [least, most] = std::minmax_element(geometry.radius.begin(), geometry.radius.end());
+  const bool all = std::find(drawn.begin(), drawn.end(), not_drawn) == drawn.end();
+  if (all && *least == *most) {
+    surface.radius.share(*most * scale);
+    return;
+  }
+  surface.radius.allocate(drawn.size());
+  for (std::size_t i = 0; i < drawn.size(); ++i) {
+    surface.radius.at(i) = drawn[i] == not_drawn ? 0 : geometry.radius[drawn[i]] * scale;
+  }
+}
+
+/// One colour for all, a palette where it has room for them, or each particle's own.
+void set_colors(const GeometrySource& geometry, const UninitializedVector<std::uint32_t>& drawn,
+                SurfaceColors& colors) {
+  constexpr std::size_t palette_size = 256;
+  std::unordered_map<std::uint32_t, std::uint8_t> place;
+  colors.palette.clear();
+  for (const std::uint32_t srgb : geometry.srgb) {
+    if (place.count(srgb) != 0) continue;
+    if (colors.palette.size() == palette_size) break;
+    place.emplace(srgb, static_cast<std::uint8_t>(colors.palette.size()));
+    colors.palette.push_back(color_from_srgb(srgb));
+  }
+  if (colors.palette.size() == 1) return;
+  const bool fits = std::all_of(geometry.srgb.begin(), geometry.srgb.end(),
+                                [&](std::uint32_t srgb) { return place.count(srgb) != 0; });
+  if (fits) {
+    colors.index.resize(drawn.size());
+  } else {
+    colors.srgb.resize(drawn.size());
+  }
+  for (std::size_t i = 0; i < drawn.size(); ++i) {
+    const std::uint32_t srgb = drawn[i] == not_drawn ? geometry.srgb[0] : geometry.srgb[drawn[i]];
+    if (fits) {
+      colors.index[i] = place[srgb];
+    } else {
+      // Red in the low byte.
+      colors.srgb[i] = (srgb & 0xff) << 16 | (srgb & 0xff00) | srgb >> 16;
+    }
+  }
+}
+
+}  // namespace
+
+Surface make_surface(const ParticleSet& particles, const GeometrySource& geometry,
+                     const std::vector<FieldSource>& sources, const KernelOrder& order,
+                     const KernelSet& kernels) {
+  Surface surface;
+  surface.kernels = &kernels;
+  const auto particle_of = particles_in_order(sources, order);
+  const auto drawn = find_drawn(particles, geometry, particle_of);
+  set_radii(geometry, drawn, kernels.length_scale, surface);
+  set_colors(geometry, drawn, surface.colors);
+  if (!geometry.bonds.empty()) {
+    surface.sticks = make_sticks(particles, geometry.bonds, particle_of, kernels,
+                                 static_cast<float>(geometry.stick_radius * kernels.length_scale));
+  }
+  fit_reach(surface);
+  return surface;
+}
+
+std::optional<FieldSource> find_drawn_only(const ParticleSet& particles,
+                                           const GeometrySource& geometry,
+                                           const std::vector<FieldSource>& sources) {
+  std::vector<bool> in_field(particles.size());
+  for (const FieldSource& source : sources) {
+    for (const std::uint32_t i : source.index) in_field[i] = true;
+  }
+  FieldSource drawn_only;
+  drawn_only.drawn_only = true;
+  for (const std::uint32_t i : geometry.index) {
+    if (!in_field[i]) drawn_only.index.push_back(i);
+  }
+  if (drawn_only.index.empty()) return std::nullopt;
+  // A radius that fields have keeps theirs in one number, if it is; else the view is fitted by it.
+  const float largest = *std::max_element(geometry.radius.begin(), geometry.radius.end());
+  drawn_only.radius = {sources.empty() ? 0.5F * largest : sources[0].radius[0]};
+  drawn_only.weight = {sources.empty() ? 1.0F : sources[0].weight[0]};
+  return drawn_only;
+}
+
+}  // namespace motes

@@ -1,0 +1,71 @@
+// Balls and sticks: what a scene draws of particles besides their fields.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "core/color.h"
+#include "core/report.h"
+#include "particles/particle_set.h"
+#include "scene/selection.h"
+
+namespace motes {
+
+/// Radii from a table of elements: van der Waals (Mantina et al. 2009, Bondi 1964) or covalent
+/// (Cordero et al. 2008), angstrom.
+enum class ElementRadius { van_der_waals, covalent };
+
+/// What colours go by: the elements' customary ones, or a colour for each species.
+enum class ColorBy { element, species };
+
+struct ColorByProperty {
+  std::string property;
+  std::string map = "viridis";
+  std::optional<std::pair<double, double>> range;  ///< nullopt: all of the values
+  bool operator==(const ColorByProperty&) const = default;
+};
+
+/// Which bonds sticks are drawn for: the file's if it has any, else by distance; or one of the two.
+enum class BondSource { automatic, file, distance };
+
+/// Balls, or sticks between bonded particles.
+struct Geometry {
+  enum class Type { spheres, sticks };
+  Type type = Type::spheres;
+  Selection select;
+  /// A table, a number or a property; of sticks a number.
+  std::variant<ElementRadius, double, std::string> radius = ElementRadius::van_der_waals;
+  double scale = 1;  ///< factor on balls' radii
+  std::variant<ColorBy, Color, ColorByProperty> color = ColorBy::element;
+  BondSource bonds = BondSource::automatic;  ///< of sticks
+  bool operator==(const Geometry&) const = default;
+};
+
+/// The particles that are drawn, with all that their balls and sticks need.
+struct GeometrySource {
+  std::vector<std::uint32_t> index;  ///< into the ParticleSet, increasing
+  std::vector<float> radius;         ///< of balls, one an index; file's length; 0: none
+  std::vector<std::uint32_t> srgb;   ///< 0xrrggbb, one an index
+  std::vector<Bond> bonds;           ///< between particles that are drawn
+  float stick_radius = 0;            ///< file's length
+
+  bool empty() const { return index.empty(); }
+};
+
+/// What `geometry` draws of `particles`: of several balls for a particle the last. Where sticks
+/// meet there is a ball of their radius at least. Particles whose position is not finite or whose
+/// radius is no number are left out, with a warning that counts them; radii of 0 are no balls.
+/// Species that are no elements have the mean radius of those that are, with a warning, or 1 if
+/// there are none. Throws Error, which names the key ("geometry[0].radius: what"), for unknown
+/// species and properties and for what selects no particle.
+GeometrySource make_geometry_source(const ParticleSet& particles,
+                                    const std::vector<Geometry>& geometry, Warnings& warnings);
+
+/// The colour of a species that is no element: colours that are easily told apart.
+std::uint32_t other_species_color(std::size_t species);
+
+}  // namespace motes

@@ -1,0 +1,223 @@
+// From what a scene draws to balls and bonds.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "core/error.h"
+#include "particles/bonds.h"
+#include "particles/elements.h"
+#include "scene/geometry.h"
+#include "scene/transfer_function.h"
+
+namespace motes {
+namespace {
+
+std::uint32_t element_color(const Element& element) {
+  const auto& c = element.color;
+  return std::uint32_t{c[0]} << 16 | std::uint32_t{c[1]} << 8 | c[2];
+}
+
+/// One value for each species from what `of` gives for elements.
+std::vector<float> radii_of_species(const ParticleSet& particles, ElementRadius table,
+                                    Warnings& warnings) {
+  std::vector<float> radii;
+  double sum = 0;
+  int known = 0;
+  for (const std::string& name : particles.species_names) {
+    const Element* element = find_element(name);
+    radii.push_back(std::numeric_limits<float>::quiet_NaN());
+    if (element == nullptr) continue;
+    radii.back() = table == ElementRadius::covalent ? element->covalent_radius
+                                                    : van_der_waals_radius(*element);
+    sum += radii.back();
+    ++known;
+  }
+  const float other = known == 0 ? 1 : static_cast<float>(sum / known);
+  for (std::size_t s = 0; s < radii.size(); ++s) {
+    if (!std::isnan(radii[s])) continue;
+    radii[s] = other;
+    warnings.add(fmt::format("species '{}' is no element: its balls have radius {:.3g}",
+                             printable(particles.species_names[s]), other));
+  }
+  return radii;
+}
+
+/// Radii of the particles in `index`.
+std::vector<float> radii_of(const ParticleSet& particles, const Geometry& item,
+                            const std::vector<std::uint32_t>& index, Warnings& warnings) {
+  std::vector<float> radii(index.size(), 1);
+  if (const double* number = std::get_if<double>(&item.radius)) {
+    std::fill(radii.begin(), radii.end(), static_cast<float>(*number));
+  } else if (const auto* name = std::get_if<std::string>(&item.radius)) {
+    const Property& property = property_named(particles, *name);
+    std::transform(index.begin(), index.end(), radii.begin(),
+                   [&](std::uint32_t i) { return property.values[i]; });
+  } else if (!particles.species.empty()) {
+    const auto of_species =
+        radii_of_species(particles, std::get<ElementRadius>(item.radius), warnings);
+    std::transform(index.begin(), index.end(), radii.begin(),
+                   [&](std::uint32_t i) { return of_species[particles.species[i]]; });
+  }
+  for (float& radius : radii) radius *= static_cast<float>(item.scale);
+  return radii;
+}
+
+std::vector<std::uint32_t> colors_by_property(const ParticleSet& particles,
+                                              const ColorByProperty& color,
+                                              const std::vector<std::uint32_t>& index) {
+  const std::vector<float>& values = property_named(particles, color.property).values;
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const std::uint32_t i : index) {
+    if (!std::isfinite(values[i])) continue;
+    low = std::min(low, static_cast<double>(values[i]));
+    high = std::max(high, static_cast<double>(values[i]));
+  }
+  if (color.range) std::tie(low, high) = *color.range;
+  constexpr std::size_t steps = 256;
+  std::vector<std::uint32_t> table(steps);
+  // The map's own points, read off at even places.
+  const TransferFunction map = named_transfer_function(color.map, 0, 1, 1);
+  for (std::size_t i = 0; i < steps; ++i) {
+    const double place = static_cast<double>(i) / (steps - 1);
+    auto above = std::find_if(map.points.begin() + 1, map.points.end() - 1,
+                              [&](const auto& point) { return point.value >= place; });
+    const auto& a = *(above - 1);
+    const auto t = static_cast<float>((place - a.value) / (above->value - a.value));
+    table[i] = color_to_srgb({std::lerp(a.color.r, above->color.r, t),
+                              std::lerp(a.color.g, above->color.g, t),
+                              std::lerp(a.color.b, above->color.b, t)});
+  }
+  std::vector<std::uint32_t> colors;
+  colors.reserve(index.size());
+  constexpr std::uint32_t none = 0x808080;  // of values that are no numbers
+  for (const std::uint32_t i : index) {
+    const double place = high > low ? (values[i] - low) / (high - low) : 0.5;
+    colors.push_back(std::isnan(place) ? none
+                                       : table[static_cast<std::size_t>(std::lround(
+                                             std::clamp(place, 0.0, 1.0) * (steps - 1)))]);
+  }
+  return colors;
+}
+
+/// Colours of the particles in `index`.
+std::vector<std::uint32_t> colors_of(const ParticleSet& particles, const Geometry& item,
+                                     const std::vector<std::uint32_t>& index) {
+  if (const auto* property = std::get_if<ColorByProperty>(&item.color)) {
+    return colors_by_property(particles, *property, index);
+  }
+  if (const Color* color = std::get_if<Color>(&item.color)) {
+    return std::vector<std::uint32_t>(index.size(), color_to_srgb(*color));
+  }
+  std::vector<std::uint32_t> of_species;
+  for (std::size_t s = 0; s < particles.species_names.size(); ++s) {
+    const Element* element = find_element(particles.species_names[s]);
+    const bool by_element = std::get<ColorBy>(item.color) == ColorBy::element;
+    of_species.push_back(by_element && element != nullptr ? element_color(*element)
+                                                          : other_species_color(s));
+  }
+  std::vector<std::uint32_t> colors(index.size(), 0xcccccc);
+  if (particles.species.empty()) return colors;
+  std::transform(index.begin(), index.end(), colors.begin(),
+                 [&](std::uint32_t i) { return of_species[particles.species[i]]; });
+  return colors;
+}
+
+std::vector<Bond> bonds_of(const ParticleSet& particles, BondSource source, Warnings& warnings) {
+  if (source == BondSource::file && particles.bonds.empty()) {
+    throw Error("bonds: the file has none; expected \"distance\", or a file with bonds");
+  }
+  const bool of_file =
+      source == BondSource::file || (source == BondSource::automatic && !particles.bonds.empty());
+  return of_file ? file_bonds(particles, warnings) : find_bonds(particles);
+}
+
+/// What is drawn of each particle, while the items are gone through.
+struct Drawn {
+  std::vector<bool> any;
+  std::vector<float> radius;
+  std::vector<std::uint32_t> srgb;
+
+  explicit Drawn(std::size_t n) : any(n), radius(n), srgb(n) {}
+};
+
+void add_item(const ParticleSet& particles, const Geometry& item, Drawn& drawn,
+              GeometrySource& source, Warnings& warnings) {
+  const auto index = select_particles(particles, item.select);
+  if (index.empty()) throw Error("select: takes none of the particles");
+  const auto colors = colors_of(particles, item, index);
+  std::vector<float> radii;
+  if (item.type == Geometry::Type::spheres) {
+    radii = radii_of(particles, item, index, warnings);
+  } else {
+    source.stick_radius = static_cast<float>(std::get<double>(item.radius));
+    radii.assign(index.size(), source.stick_radius);
+    std::vector<bool> selected(particles.size());
+    for (const std::uint32_t i : index) selected[i] = true;
+    for (const Bond& bond : bonds_of(particles, item.bonds, warnings)) {
+      if (selected[bond.first] && selected[bond.second]) source.bonds.push_back(bond);
+    }
+  }
+  std::size_t bad = 0;
+  for (std::size_t k = 0; k < index.size(); ++k) {
+    const std::uint32_t i = index[k];
+    const bool finite = std::isfinite(particles.x[i]) && std::isfinite(particles.y[i]) &&
+                        std::isfinite(particles.z[i]) && std::isfinite(radii[k]);
+    if (!finite) {
+      ++bad;
+      continue;
+    }
+    const bool joint = item.type == Geometry::Type::sticks;
+    if (joint && drawn.any[i]) {
+      drawn.radius[i] = std::max(drawn.radius[i], radii[k]);
+      continue;
+    }
+    drawn.radius[i] = drawn.any[i]
+                          ? std::max(radii[k], source.bonds.empty() ? 0 : source.stick_radius)
+                          : radii[k];
+    drawn.any[i] = true;
+    drawn.srgb[i] = colors[k];
+  }
+  if (bad != 0) {
+    warnings.add(
+        fmt::format("{} of {} particles are not drawn: their positions or radii are not "
+                    "finite",
+                    bad, index.size()));
+  }
+}
+
+}  // namespace
+
+std::uint32_t other_species_color(std::size_t species) {
+  // Easily told apart, also by colour-blind people (Okabe and Ito 2008).
+  constexpr std::uint32_t colors[] = {0xe69f00, 0x56b4e9, 0x009e73, 0xf0e442,
+                                      0x0072b2, 0xd55e00, 0xcc79a7};
+  return colors[species % std::size(colors)];
+}
+
+GeometrySource make_geometry_source(const ParticleSet& particles,
+                                    const std::vector<Geometry>& geometry, Warnings& warnings) {
+  GeometrySource source;
+  if (geometry.empty()) return source;
+  Drawn drawn(particles.size());
+  for (std::size_t k = 0; k < geometry.size(); ++k) {
+    try {
+      add_item(particles, geometry[k], drawn, source, warnings);
+    } catch (const Error& error) {
+      throw Error(fmt::format("geometry[{}].{}", k, error.what()));
+    }
+  }
+  for (std::uint32_t i = 0; i < particles.size(); ++i) {
+    if (!drawn.any[i]) continue;
+    source.index.push_back(i);
+    source.radius.push_back(drawn.radius[i]);
+    source.srgb.push_back(drawn.srgb[i]);
+  }
+  if (source.empty())
+    throw Error("geometry: none of its particles has a finite position and radius");
+  return source;
+}
+
+}  // namespace motes

@@ -1,0 +1,120 @@
+// Balls and sticks in pictures: alone, in the volume, and of particles that no field has.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/engine_check.h"
+#include "render/renderer.h"
+
+namespace motes {
+namespace {
+
+/// Balls of that radius for some particles, all of one colour.
+GeometrySource balls(std::vector<std::uint32_t> index, float radius) {
+  GeometrySource source;
+  source.radius.assign(index.size(), radius);
+  source.srgb.assign(index.size(), 0x3366cc);
+  source.index = std::move(index);
+  return source;
+}
+
+/// Particles on a grid, off the axes.
+std::vector<Point3d> some_points() {
+  std::vector<Point3d> points;
+  for (int i = 0; i < 60; ++i) {
+    points.push_back({1.7 * (i % 4) - 2.6, 1.9 * (i / 4 % 4) - 2.7, 1.6 * (i / 16) - 2.4});
+  }
+  return points;
+}
+
+TEST(DrawnOnly, ParticlesAddNothingToTheFields) {
+  PlainScene s = plain_scene(some_points(), 16);
+  // The field has a third of the particles; all the others are in the tree to be drawn.
+  FieldSource& field = s.scene.fields[0];
+  field.index.clear();
+  GeometrySource geometry;
+  std::vector<std::uint32_t> others;
+  for (std::uint32_t i = 0; i < s.particles.size(); ++i) {
+    (i % 3 == 0 ? field.index : others).push_back(i);
+  }
+  const Renderer alone(s.particles, s.scene.fields);
+  // Balls so small that no ray meets one.
+  const Renderer with(s.particles, s.scene.fields, balls(others, 1e-6F));
+  EXPECT_EQ(with.kernels().size(), s.particles.size());
+  EXPECT_EQ(with.kernels().box().min, alone.kernels().box().min);
+  s.scene.render.lighting.enabled = true;
+  for (const Way& way : all_ways()) {
+    const Framebuffer expected = render_in(way, alone, s.scene);
+    EXPECT_LE(compare_images(render_in(way, with, s.scene), expected).max, 2e-5) << way.name();
+  }
+}
+
+/// A ball in front of a lone kernel, and one behind it.
+TEST(Geometry, CutsTheVolumeWhereRaysMeetIt) {
+  PlainScene s = plain_scene({{0, 0, 0}, {0, 0, 3}, {0.3, 0, -3}}, 16);
+  s.scene.fields[0].index = {0};
+  s.scene.render.surface.antialiasing = 1;
+  s.scene.render.surface.occlusion_samples = 0;
+  s.scene.render.lighting.enabled = true;
+  s.scene.render.lighting.ambient = 1;
+  s.scene.render.lighting.diffuse = s.scene.render.lighting.specular = 0;
+  s.scene.transfer_functions = {ramp(1, 0.5)};
+  const Renderer renderer(s.particles, s.scene.fields, balls({1, 2}, 0.7F));
+  // The reference's layers, from closed forms: ambient light alone, so that colours are constant.
+  const Color blue = color_from_srgb(0x3366cc);
+  const int width = s.scene.render.width, height = s.scene.render.height;
+  std::vector<std::vector<reference::Layer>> layers;
+  for (int i = 0; i < width * height; ++i) {
+    auto& of_pixel = layers.emplace_back();
+    const reference::CameraRay ray =
+        reference::camera_ray(s.scene.camera, width, height, i % width, i / width);
+    for (const Point3d& center : {Point3d{0, 0, 3}, Point3d{static_cast<double>(0.3F), 0, -3}}) {
+      const Vector3d to = center - ray.origin;
+      const double a = dot(ray.direction, ray.direction), b = dot(ray.direction, to);
+      const double radius = 0.7F, c = dot(to, to) - radius * radius;
+      if (b * b - a * c < 0) continue;
+      of_pixel.push_back({(b - std::sqrt(b * b - a * c)) / a, 1, blue.r, blue.g, blue.b});
+    }
+  }
+  const reference::Image truth = reference::render(s.particles, s.scene, layers);
+  for (const Way& way : all_ways()) {
+    const ImageDifference difference =
+        compare_images(render_in(way, renderer, s.scene), to_framebuffer(truth), truth.unstable);
+    EXPECT_LE(difference.max, 1e-3) << way.name();
+  }
+}
+
+TEST(Geometry, IsDrawnWithoutAnyField) {
+  PlainScene s = plain_scene(some_points(), 16);
+  s.scene.fields.clear();
+  s.scene.transfer_functions.clear();
+  std::vector<std::uint32_t> all(s.particles.size());
+  for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;
+  const Renderer renderer(s.particles, {}, balls(all, 0.6F));
+  const Framebuffer image = renderer.render(s.scene, {});
+  float opaque = 0;
+  for (std::size_t i = 3; i < image.rgba.size(); i += 4) {
+    EXPECT_LE(image.rgba[i], 1.00001F);
+    opaque = std::max(opaque, image.rgba[i]);
+  }
+  EXPECT_FLOAT_EQ(opaque, 1);
+  // The same for any number of threads.
+  EXPECT_EQ(image, renderer.render(s.scene, {.threads = 1}));
+}
+
+TEST(Geometry, EdgesAreAntialiasedWithoutMoreSamplesOfTheVolume) {
+  PlainScene s = plain_scene({{0, 0, 0}, {0.4, 0.3, 2}}, 12);
+  const Renderer renderer(s.particles, s.scene.fields, balls({1}, 0.9F));
+  RenderStatistics one, nine;
+  s.scene.render.surface.antialiasing = 1;
+  const Framebuffer hard = renderer.render(s.scene, {}, &one);
+  s.scene.render.surface.antialiasing = 3;
+  const Framebuffer soft = renderer.render(s.scene, {}, &nine);
+  EXPECT_GT(compare_images(hard, soft).max, 0.05);
+  // Rays at edges go on behind the ball.
+  EXPECT_LT(static_cast<double>(nine.samples), 1.2 * static_cast<double>(one.samples));
+}
+
+}  // namespace
+}  // namespace motes

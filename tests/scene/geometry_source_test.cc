@@ -1,0 +1,100 @@
+// Which balls and bonds a scene's geometry comes to, and what its JSON may be.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "core/error.h"
+#include "scene/geometry.h"
+#include "scene/scene.h"
+
+namespace motes {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+ParticleSet water() {
+  ParticleSet particles;
+  particles.x = {0, 0.96F, -0.24F, 5};
+  particles.y = {0, 0, 0.93F, 5};
+  particles.z = {0, 0, 0, 5};
+  particles.species_names = {"O", "H", "X"};
+  particles.species = {0, 1, 1, 2};
+  particles.properties = {{"size", {2, 0, 1, NAN}}, {"q", {-1, 1, 3, 0}}};
+  particles.length_unit = "angstrom";
+  return particles;
+}
+
+GeometrySource source_of(const std::string& geometry, Warnings& warnings) {
+  const std::string text =
+      R"({"version": 1, "data": {"path": "a.xyz"}, "geometry": )" + geometry + "}";
+  return make_geometry_source(water(), parse_scene(text, "s.json").geometry, warnings);
+}
+
+std::string message_of(const std::string& geometry) {
+  Warnings warnings;
+  try {
+    source_of(geometry, warnings);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(GeometrySource, TakesRadiiFromElements) {
+  Warnings warnings;
+  const GeometrySource source = source_of(
+      R"([{"type": "spheres", "scale": 0.5, "select": {"species": ["O", "H"]}}])", warnings);
+  EXPECT_THAT(source.index, ElementsAre(0, 1, 2));
+  EXPECT_THAT(source.radius, ElementsAre(0.76F, 0.6F, 0.6F));  // half of 1.52 and 1.20
+  EXPECT_THAT(source.srgb, ElementsAre(0xff0d0d, 0xffffff, 0xffffff));
+}
+
+TEST(GeometrySource, TakesPropertiesAndLeavesOutWhatIsNone) {
+  Warnings warnings;
+  const GeometrySource source = source_of(
+      R"([{"type": "spheres", "radius": "size",
+           "color": {"property": "q", "map": "grey", "range": [-1, 3]}}])",
+      warnings);
+  EXPECT_THAT(source.index, ElementsAre(0, 1, 2));
+  EXPECT_THAT(source.radius, ElementsAre(2, 0, 1));
+  EXPECT_LT(source.srgb[0], source.srgb[1]);
+  EXPECT_LT(source.srgb[1], source.srgb[2]);
+  EXPECT_THAT(warnings.lines(), ElementsAre(HasSubstr("1 of 4 particles are not drawn")));
+}
+
+TEST(GeometrySource, DrawsBondsByDistanceWithJoints) {
+  Warnings warnings;
+  const GeometrySource source = source_of(
+      R"([{"type": "spheres", "radius": 0.1, "select": {"species": "O"}},
+          {"type": "sticks", "radius": 0.2, "color": "#0000ff"}])",
+      warnings);
+  EXPECT_EQ(source.bonds, (std::vector<Bond>{{0, 1}, {0, 2}}));
+  EXPECT_FLOAT_EQ(source.stick_radius, 0.2F);
+  // The oxygen keeps its colour, but no ball is thinner than its sticks.
+  EXPECT_THAT(source.radius, ElementsAre(0.2F, 0.2F, 0.2F, 0.2F));
+  EXPECT_THAT(source.srgb, ElementsAre(0xff0d0d, 0x0000ff, 0x0000ff, 0x0000ff));
+}
+
+TEST(GeometrySource, RefusesWithOneClearLine) {
+  EXPECT_THAT(message_of(R"([{"type": "cubes"}])"),
+              HasSubstr("geometry[0].type: expected \"spheres\" or \"sticks\""));
+  EXPECT_THAT(message_of(R"([{"type": "spheres", "radius": 0}])"),
+              HasSubstr("geometry[0].radius: expected \"van_der_waals\""));
+  EXPECT_THAT(message_of(R"([{"type": "sticks", "scale": 2}])"),
+              HasSubstr("geometry[0].scale: sticks have none"));
+  EXPECT_THAT(message_of(R"([{"type": "sticks"}, {"type": "sticks"}])"),
+              HasSubstr("geometry[1]: expected sticks only once"));
+  EXPECT_THAT(message_of(R"([{"type": "spheres", "color": "blu"}])"),
+              HasSubstr("geometry[0].color: expected \"element\""));
+  EXPECT_THAT(message_of(R"([{"type": "spheres", "radius": "siez"}])"),
+              HasSubstr("unknown property 'siez'; did you mean 'size'?"));
+  EXPECT_THAT(message_of(R"([{"type": "spheres", "select": {"species": "Si"}}])"),
+              HasSubstr("unknown species 'Si'"));
+  EXPECT_THAT(message_of(R"([{"type": "sticks", "bonds": "file"}])"),
+              HasSubstr("geometry[0].bonds: the file has none"));
+}
+
+}  // namespace
+}  // namespace motes
