@@ -158,14 +158,15 @@ class TileTracer {
     const hn::RebindToSigned<LaneTag> di;
     unsigned touched = 0;
     for (int corner = 0; corner < 4; ++corner) {
+      const int right = corner % 2, down = corner / 2;
       alignas(64) float depths[Bvh::leaf_size];
       alignas(64) std::int32_t places[Bvh::leaf_size];
       unsigned hits = 0;
       for (std::size_t i = 0; i < Bvh::leaf_size; i += hn::Lanes(d)) {
-        const Lanes column = hn::Add(hn::Load(d, covered.first_column + i),
-                                     hn::Set(d, static_cast<float>(corner % 2)));
+        const Lanes column =
+            hn::Add(hn::Load(d, covered.first_column + i), hn::Set(d, static_cast<float>(right)));
         const Lanes row =
-            hn::Add(hn::Load(d, covered.first_row + i), hn::Set(d, static_cast<float>(corner / 2)));
+            hn::Add(hn::Load(d, covered.first_row + i), hn::Set(d, static_cast<float>(down)));
         LaneMask hit = hn::And(hn::Le(column, hn::Load(d, covered.last_column + i)),
                                hn::Le(row, hn::Load(d, covered.last_row + i)));
         if (hn::AllFalse(d, hit)) continue;
