@@ -50,7 +50,7 @@ std::array<double, 2> sobol_point(std::uint32_t i, std::uint32_t seed) {
           unit(scrambled(second, hashed(seed, 1)))};
 }
 
-/// direction(point) for the points of all classes.
+/// direction(point) for the points of all pixels.
 template <class Direction>
 std::vector<Vector3f> directions(int samples, std::uint32_t seed, const Direction& direction) {
   const int count = pattern_side * pattern_side * samples;

@@ -2,7 +2,9 @@
 // a small pattern.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/vec.h"
@@ -14,7 +16,7 @@ namespace motes {
 inline constexpr int pattern_side = 8;
 
 /// Number of a pixel in the pattern, 0 to 63.
-inline int pattern_class(int px, int py) {
+inline int pattern_number(int px, int py) {
   // Bits of x and y by turns: the directions of squares of four and sixteen pixels are evenly
   // spread too.
   int number = 0;
@@ -24,8 +26,14 @@ inline int pattern_class(int px, int py) {
   return number;
 }
 
-/// Directions about +z whose density goes with the cosine of the angle to it: samples for class 0,
-/// then those for class 1, ...
+/// The directions of a pixel of that number, of all that the functions below return.
+inline std::span<const Vector3f> directions_of(std::span<const Vector3f> all, int number) {
+  const std::size_t samples = all.size() / (std::size_t{pattern_side} * pattern_side);
+  return all.subspan(static_cast<std::size_t>(number) * samples, samples);
+}
+
+/// Directions about +z whose density goes with the cosine of the angle to it: those of the pixel
+/// with number 0, then those of the next, ...
 std::vector<Vector3f> cosine_directions(int samples, std::uint32_t seed);
 
 /// Directions evenly spread within an angle (radians) of `axis`, a unit vector.

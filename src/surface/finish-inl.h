@@ -132,7 +132,7 @@ struct BlockHits {
 
 /// Works out the hits of a block as if all were of balls; those of rays without a hit are of no
 /// meaning.
-inline void finish_block_balls(const Surface& surface, const TileRays& rays, int block,
+inline void finish_block_balls(const Surface& surface, const TileRays& rays, std::size_t block,
                                const std::uint32_t* particles, BlockHits& out) {
   const hn::CappedTag<double, max_lanes / 2> d;
   const hn::Rebind<float, decltype(d)> df;
@@ -141,7 +141,7 @@ inline void finish_block_balls(const Surface& surface, const TileRays& rays, int
   alignas(64) double u[TileRays::lanes], v[TileRays::lanes];
   alignas(64) float x[TileRays::lanes], y[TileRays::lanes], z[TileRays::lanes];
   alignas(64) float radius[TileRays::lanes];
-  for (int l = 0; l < TileRays::lanes; ++l) {
+  for (std::size_t l = 0; l < TileRays::lanes; ++l) {
     u[l] = rays.first_place[0] + TileRays::column(block, l) * rays.place_step[0];
     v[l] = rays.first_place[1] + TileRays::row(block, l) * rays.place_step[1];
     const std::size_t p = particles[l] == no_particle ? 0 : particles[l];
@@ -187,18 +187,19 @@ inline CameraRay camera_ray(const TileRays& rays, int column, int row) {
 /// Works out the hits of a tile whose first ray is that in `column` and `row`.
 inline void finish_tile(const Surface& surface, const TileRays& rays, const TileHits& tile,
                         int column, int row, const RayGrid& grid, SurfaceHits& hits) {
-  for (int block = 0; block < TileRays::num_blocks; ++block) {
+  for (std::size_t block = 0; block < TileRays::num_blocks; ++block) {
+    const std::uint32_t* const particles = tile.particle + block * TileRays::lanes;
     BlockHits finished;
     const auto is_hit = [](std::uint32_t particle) { return particle != no_particle; };
-    if (std::any_of(tile.particle[block], tile.particle[block] + TileRays::lanes, is_hit)) {
-      finish_block_balls(surface, rays, block, tile.particle[block], finished);
+    if (std::any_of(particles, particles + TileRays::lanes, is_hit)) {
+      finish_block_balls(surface, rays, block, particles, finished);
     }
-    for (int l = 0; l < TileRays::lanes; ++l) {
+    for (std::size_t l = 0; l < TileRays::lanes; ++l) {
       const int x = TileRays::column(block, l), y = TileRays::row(block, l);
       if (!rays.has(x, y)) continue;
       SurfaceHit hit;
-      hit.particle = tile.particle[block][l];
-      hit.stick = tile.stick[block][l];
+      hit.particle = particles[l];
+      hit.stick = tile.stick[block * TileRays::lanes + l];
       if (hit.stick != no_stick) {
         const CameraRay ray = camera_ray(rays, x, y);
         hit = finish_hit(surface, ray.origin, ray.direction, hit.particle, hit.stick);

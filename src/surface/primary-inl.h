@@ -27,11 +27,11 @@ HWY_BEFORE_NAMESPACE();
 namespace motes {
 namespace HWY_NAMESPACE {
 
-/// The nearest hits of a tile's rays, block by block.
+/// The nearest hits of a tile's rays, block by block: lane l of block b at TileRays::lanes b + l.
 struct TileHits {
-  alignas(64) float depth[TileRays::num_blocks][TileRays::lanes];  ///< in the tile's frame
-  alignas(64) std::uint32_t particle[TileRays::num_blocks][TileRays::lanes];
-  alignas(64) std::uint32_t stick[TileRays::num_blocks][TileRays::lanes];
+  static constexpr std::size_t size = std::size_t{TileRays::num_blocks} * TileRays::lanes;
+  alignas(64) float depth[size];  ///< in the tile's frame
+  alignas(64) std::uint32_t particle[size], stick[size];
   /// The largest depth of each block: what lies beyond it cannot be seen there.
   alignas(64) float farthest[TileRays::num_blocks];
 };
@@ -72,15 +72,15 @@ class TileTracer {
 
   /// No hits; rays that are not there have one before all others, so that nothing changes it.
   void clear() {
-    for (int b = 0; b < TileRays::num_blocks; ++b) {
-      hits_.farthest[b] = -infinity;
-      for (int l = 0; l < TileRays::lanes; ++l) {
-        const bool there = rays_.has(TileRays::column(b, l), TileRays::row(b, l));
-        hits_.depth[b][l] = there ? infinity : -infinity;
-        hits_.particle[b][l] = no_particle;
-        hits_.stick[b][l] = no_stick;
-        if (there) hits_.farthest[b] = infinity;
-      }
+    std::fill_n(hits_.particle, TileHits::size, no_particle);
+    std::fill_n(hits_.stick, TileHits::size, no_stick);
+    std::fill_n(hits_.farthest, TileRays::num_blocks, -infinity);
+    for (std::size_t i = 0; i < TileHits::size; ++i) {
+      const std::size_t block = i / TileRays::lanes;
+      const bool there = rays_.has(TileRays::column(block, i % TileRays::lanes),
+                                   TileRays::row(block, i % TileRays::lanes));
+      hits_.depth[i] = there ? infinity : -infinity;
+      if (there) hits_.farthest[block] = infinity;
     }
   }
 
@@ -158,14 +158,15 @@ class TileTracer {
     const hn::RebindToSigned<LaneTag> di;
     unsigned touched = 0;
     for (int corner = 0; corner < 4; ++corner) {
+      const int right = corner % 2, down = corner / 2;
       alignas(64) float depths[Bvh::leaf_size];
       alignas(64) std::int32_t places[Bvh::leaf_size];
       unsigned hits = 0;
       for (std::size_t i = 0; i < Bvh::leaf_size; i += hn::Lanes(d)) {
-        const Lanes column = hn::Add(hn::Load(d, covered.first_column + i),
-                                     hn::Set(d, static_cast<float>(corner % 2)));
+        const Lanes column =
+            hn::Add(hn::Load(d, covered.first_column + i), hn::Set(d, static_cast<float>(right)));
         const Lanes row =
-            hn::Add(hn::Load(d, covered.first_row + i), hn::Set(d, static_cast<float>(corner / 2)));
+            hn::Add(hn::Load(d, covered.first_row + i), hn::Set(d, static_cast<float>(down)));
         LaneMask hit = hn::And(hn::Le(column, hn::Load(d, covered.last_column + i)),
                                hn::Le(row, hn::Load(d, covered.last_row + i)));
         if (hn::AllFalse(d, hit)) continue;
@@ -179,7 +180,7 @@ class TileTracer {
         const auto place = hn::And(hn::Or(hn::ShiftLeft<4>(block), lane),
                                    hn::Set(di, TileRays::num_blocks * TileRays::lanes - 1));
         hit = hn::And(hit, chord.any);
-        hit = hn::And(hit, hn::Lt(depth, hn::GatherIndex(d, hits_.depth[0], place)));
+        hit = hn::And(hit, hn::Lt(depth, hn::GatherIndex(d, hits_.depth, place)));
         hn::Store(depth, d, depths + i);
         hn::Store(place, di, places + i);
         hits |= mask_bits(d, hit) << i;
@@ -187,11 +188,11 @@ class TileTracer {
       // One by one: several may hit the same ray.
       for (hits &= small; hits != 0; hits &= hits - 1) {
         const auto i = static_cast<std::size_t>(__builtin_ctz(hits));
-        float& old = hits_.depth[0][places[i]];
+        float& old = hits_.depth[places[i]];
         if (!(depths[i] < old)) continue;
         old = depths[i];
-        hits_.particle[0][places[i]] = static_cast<std::uint32_t>(first + i);
-        hits_.stick[0][places[i]] = no_stick;
+        hits_.particle[places[i]] = static_cast<std::uint32_t>(first + i);
+        hits_.stick[places[i]] = no_stick;
         touched |= 1u << places[i] / TileRays::lanes;
       }
     }
@@ -199,7 +200,7 @@ class TileTracer {
       const auto block = static_cast<std::size_t>(__builtin_ctz(touched));
       Lanes farthest = hn::Set(d, -infinity);
       for (std::size_t l = 0; l < TileRays::lanes; l += hn::Lanes(d)) {
-        farthest = hn::Max(farthest, hn::Load(d, hits_.depth[block] + l));
+        farthest = hn::Max(farthest, hn::Load(d, hits_.depth + block * TileRays::lanes + l));
       }
       hits_.farthest[block] = hn::GetLane(hn::MaxOfLanes(d, farthest));
     }
@@ -267,6 +268,7 @@ class TileTracer {
     LaneMask any = hn::FirstN(d, 0);
     Lanes farthest = hn::Set(d, -infinity);
     for (std::size_t l = 0; l < TileRays::lanes; l += hn::Lanes(d)) {
+      const std::size_t at = block * TileRays::lanes + l;
       const auto chord = chord_of(l);
       Lanes hit = hn::Add(hn::Set(d, depth), chord.first);
       LaneMask closer = chord.any;
@@ -275,15 +277,15 @@ class TileTracer {
         hit = hn::IfThenElse(hn::Gt(hit, near), hit, hn::Add(hn::Set(d, depth), chord.last));
         closer = hn::And(closer, hn::Gt(hit, near));
       }
-      const Lanes old = hn::Load(d, hits_.depth[block] + l);
+      const Lanes old = hn::Load(d, hits_.depth + at);
       closer = hn::And(closer, hn::Lt(hit, old));
       const Lanes now = hn::IfThenElse(closer, hit, old);
       farthest = hn::Max(farthest, now);
       any = hn::Or(any, closer);
-      hn::Store(now, d, hits_.depth[block] + l);
+      hn::Store(now, d, hits_.depth + at);
       const auto closer_u = hn::RebindMask(du, closer);
-      hn::BlendedStore(hn::Set(du, particle), closer_u, du, hits_.particle[block] + l);
-      hn::BlendedStore(hn::Set(du, stick), closer_u, du, hits_.stick[block] + l);
+      hn::BlendedStore(hn::Set(du, particle), closer_u, du, hits_.particle + at);
+      hn::BlendedStore(hn::Set(du, stick), closer_u, du, hits_.stick + at);
     }
     if (!hn::AllFalse(d, any)) hits_.farthest[block] = hn::GetLane(hn::MaxOfLanes(d, farthest));
   }

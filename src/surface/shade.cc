@@ -12,6 +12,9 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
+/// v with length 1; without std::hypot()'s care for lengths that no vector has here.
+Vector3d unit(const Vector3d& v) { return v / std::sqrt(dot(v, v)); }
+
 /// s c + plus
 Color scaled(const Color& c, double s, double plus) {
   const auto channel = [&](float x) {
@@ -31,9 +34,12 @@ Color phong(const Lighting& lighting, const Color& base, const Vector3d& normal,
   const double lit = lighting.direction ? static_cast<double>(light.lamp) : sky;
   const double cosine = dot(normal, lamp);
   if (!(cosine > 0) || lit == 0) return scaled(base, lighting.ambient * sky, 0);
-  const double mirrored = std::max(dot(normal, normalize(lamp + view)), 0.0);
+  const double mirrored =
+      lighting.direction ? std::max(dot(normal, unit(lamp + view)), 0.0) : cosine;
+  const float gloss =
+      std::pow(static_cast<float>(mirrored), static_cast<float>(lighting.shininess));
   return scaled(base, lighting.ambient * sky + lit * lighting.diffuse * cosine,
-                lit * lighting.specular * std::pow(mirrored, lighting.shininess));
+                lit * lighting.specular * static_cast<double>(gloss));
 }
 
 /// One rect on its way.
@@ -107,37 +113,36 @@ class RectShader {
           const Ray ray = ray_of(x, y, i);
           if (ray.hit.any()) spots_.add({ray.point(), Vector3d(ray.hit.normal), {}});
         }
-        const int pattern = pattern_class(rect_.x + x, rect_.y + y);
-        for (Spot& spot : spots_.end_pixel()) spot.light = light_of(spot, pattern);
+        const int number = pattern_number(rect_.x + x, rect_.y + y);
+        for (Spot& spot : spots_.end_pixel()) spot.light = light_of(spot, number);
       }
     }
   }
 
-  Light light_of(const Spot& spot, int pattern) {
+  /// By the directions of a pixel of that number.
+  Light light_of(const Spot& spot, int number) {
     Light light;
-    if (const int count = shading_.occlusion_samples; count > 0) {
+    if (shading_.occlusion_samples > 0) {
       const Across sides = across(spot.normal);
       directions_.clear();
-      for (int i = 0; i < count; ++i) {
-        const Vector3d d(frame_.sky[static_cast<std::size_t>(pattern * count + i)]);
+      for (const Vector3f& direction : directions_of(frame_.sky, number)) {
+        const Vector3d d(direction);
         directions_.emplace_back(d.x * sides.x + d.y * sides.y + d.z * spot.normal);
       }
-      light.sky = free_part(spot.point, count, shading_.occlusion_distance);
+      light.sky = free_part(spot, shading_.occlusion_samples, shading_.occlusion_distance);
     }
     if (has_soft_shadows()) {
-      const int count = shading_.shadow_samples;
       directions_.clear();
-      for (int i = 0; i < count; ++i) {
-        const Vector3f& d = frame_.lamp[static_cast<std::size_t>(pattern * count + i)];
-        if (dot(Vector3d(d), spot.normal) > 0) directions_.push_back(d);
+      for (const Vector3f& direction : directions_of(frame_.lamp, number)) {
+        if (dot(Vector3d(direction), spot.normal) > 0) directions_.push_back(direction);
       }
-      light.lamp = free_part(spot.point, count, infinity);
+      light.lamp = free_part(spot, shading_.shadow_samples, infinity);
     }
     return light;
   }
   /// The part of `count` rays of which those along directions_ are the ones that may be free.
-  float free_part(const SurfacePoint& point, int count, double length) const {
-    return static_cast<float>(num_unoccluded(*frame_.surface, point, directions_, length)) /
+  float free_part(const Spot& spot, int count, double length) const {
+    return static_cast<float>(num_unoccluded(*frame_.surface, spot.point, directions_, length)) /
            static_cast<float>(count);
   }
 
@@ -165,7 +170,7 @@ class RectShader {
       }
       if (has_shadows() && !has_soft_shadows()) light.lamp = hard_light(ray);
       out.color[at] = phong(shading_.lighting, frame_.surface->colors.of(ray.hit.particle),
-                            Vector3d(ray.hit.normal), -normalize(ray.direction), light);
+                            Vector3d(ray.hit.normal), -unit(ray.direction), light);
     }
   }
 

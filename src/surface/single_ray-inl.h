@@ -46,7 +46,7 @@ inline Ray make_ray(const SurfacePoint& from, const Vector3d& unit_direction, do
     ray.high[i] = static_cast<float>(origin[i]);
     ray.low[i] = static_cast<float>(origin[i] - static_cast<double>(ray.high[i]));
     ray.direction[i] = static_cast<float>(unit_direction[i]);
-    // Along a plane: so steep that all squares below stay finite.
+    // Along a plane: not so steep that products with coordinates overflow.
     const double d = std::max(std::abs(unit_direction[i]), 1e-18);
     ray.inverse[i] = static_cast<float>(std::copysign(1 / d, unit_direction[i]));
     farthest = std::max(farthest, std::abs(origin[i]));

@@ -6,6 +6,8 @@
 // for float is as small as the tile.
 #pragma once
 
+#include <cstddef>
+
 #include "core/vec.h"
 #include "surface/trace.h"
 
@@ -25,10 +27,12 @@ struct TileRays {
     return x >= begin[0] && x < end[0] && y >= begin[1] && y < end[1];
   }
   /// Where a lane of a block is in the tile.
-  static constexpr int column(int b, int lane) {
-    return b % blocks_per_side * block + lane % block;
+  static constexpr int column(std::size_t b, std::size_t lane) {
+    return static_cast<int>(b % blocks_per_side * block + lane % block);
   }
-  static constexpr int row(int b, int lane) { return b / blocks_per_side * block + lane / block; }
+  static constexpr int row(std::size_t b, std::size_t lane) {
+    return static_cast<int>(b / blocks_per_side * block + lane / block);
+  }
 
   bool orthographic;
   Vector3d axes[2], forward;

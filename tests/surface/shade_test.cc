@@ -127,7 +127,7 @@ TEST(AmbientOcclusion, IsWhatALongMonteCarloRunGives) {
     for (int i = 0; i < 3; ++i) {
       // One pixel, so small that those around it see the same point.
       SurfaceView view = random_place.view;
-      const Line towards = camera_line(view, grid.u + grid.du * (grid.column + i * grid.width / 3),
+      const Line towards = camera_line(view, grid.u + grid.du * (grid.column + i * grid.width / 3.),
                                        grid.v + grid.dv * grid.row);
       if (view.orthographic) view.eye = towards.origin;
       view.axes = camera_axes({towards.origin, towards.at(1), view.axes.y, 45, {}});
@@ -179,8 +179,8 @@ struct Pile {
     std::uniform_real_distribution<double> uniform(-0.2, 0.2);
     std::vector<Point3d> points;
     for (int i = 0; i < 1000; ++i) {
-      points.emplace_back(i % 10 + uniform(random), i / 10 % 10 + uniform(random),
-                          i / 100 + uniform(random));
+      const int row = i / 10 % 10, layer = i / 100;
+      points.emplace_back(i % 10 + uniform(random), row + uniform(random), layer + uniform(random));
     }
     const ParticleSet particles = particles_at(points);
     kernels = build_kernel_set(particles, {field_of_all(particles, 1, 1, {})});
@@ -233,10 +233,11 @@ TEST(Shade, TellsTheSameOfAPixelWhateverTheRectAndTheThreads) {
       render_surface(frame, rect, part);
       for (int row = 0; row < 2 * rect.height; ++row) {
         for (int column = 0; column < 2 * rect.width; ++column) {
-          const auto at = static_cast<std::size_t>(row * 2 * rect.width + column);
-          const auto in_whole = static_cast<std::size_t>((2 * y + row) * 192 + 2 * x + column);
-          ASSERT_EQ(part.depth[at], whole.depth[in_whole]);
-          ASSERT_EQ(part.color[at], whole.color[in_whole]);
+          const int in_part = row * 2 * rect.width + column;
+          const int in_whole = (2 * y + row) * 192 + 2 * x + column;
+          const auto p = static_cast<std::size_t>(in_part), w = static_cast<std::size_t>(in_whole);
+          ASSERT_EQ(part.depth[p], whole.depth[w]);
+          ASSERT_EQ(part.color[p], whole.color[w]);
         }
       }
     });
@@ -277,8 +278,9 @@ TEST(Shade, KeepsToItsFormulasForHardShadows) {
     const ImagePlane plane{half, half * 13 / 17, 17, 13, 2};
     const SurfaceSamples samples = render(scene.surface, random.view, plane, shading);
     for (int i = 0; i < 34 * 26; ++i) {
-      const Line line = camera_line(random.view, (2 * (i % 34 + 0.5) / 34 - 1) * plane.half_width,
-                                    (1 - 2 * (i / 34 + 0.5) / 26) * plane.half_height);
+      const int column = i % 34, row = i / 34;
+      const Line line = camera_line(random.view, (2 * (column + 0.5) / 34 - 1) * plane.half_width,
+                                    (1 - 2 * (row + 0.5) / 26) * plane.half_height);
       const double depth = samples.depth[static_cast<std::size_t>(i)];
       // What is hit where is the business of trace().
       const SurfaceHit hit = trace(scene.surface, line.origin, line.direction);
@@ -342,14 +344,14 @@ TEST(Shade, GivesEachParticleItsColour) {
     return render(surface, balls.view, plane, shading).color[0];
   };
   surface.colors.palette = {{0.25f, 0.5f, 2}};
-  EXPECT_EQ(shown(), Color(0.25f, 0.5f, 2));
+  EXPECT_EQ(shown(), (Color{0.25f, 0.5f, 2}));
   const std::uint32_t first = trace(surface, balls.view.eye, balls.view.axes.forward).particle;
   surface.colors.palette.push_back({1, 0, 0.125f});
   surface.colors.index = {1, 1};
   surface.colors.index[first] = 0;
-  EXPECT_EQ(shown(), Color(0.25f, 0.5f, 2));
+  EXPECT_EQ(shown(), (Color{0.25f, 0.5f, 2}));
   surface.colors.index[first] = 1;
-  EXPECT_EQ(shown(), Color(1, 0, 0.125f));
+  EXPECT_EQ(shown(), (Color{1, 0, 0.125f}));
   surface.colors.srgb = {0, 0};
   surface.colors.srgb[first] = 0x80ff33;
   const Color color = shown();

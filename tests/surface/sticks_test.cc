@@ -50,6 +50,7 @@ void expect_halves(const std::vector<Vector3d>& found, const std::vector<Vector3
 
 TEST(Sticks, AreHalvesOfBondsOwnedByTheirAtoms) {
   std::vector<Point3d> points;
+  points.reserve(40);
   for (int i = 0; i < 40; ++i) points.emplace_back(i, 0.1 * i * i, 0);
   const ParticleSet particles = particles_at(points);
   const Kernels kernels(particles, {field_of_all(particles, 1, 1, {})});
@@ -129,7 +130,8 @@ TEST(NodeReach, IsWhatTheParticlesOfEachNodeReachAndNotMuchMore) {
 
 TEST(SurfaceMemory, IsNothingAParticleForOneRadiusAndOneColour) {
   std::vector<Point3d> points;
-  for (int i = 0; i < 20000; ++i) points.emplace_back(i % 100, i / 100, i % 7);
+  points.reserve(20000);
+  for (int i = 0; i < 20000; ++i) points.emplace_back(i % 100, 0.01 * i, i % 7);
   const ParticleSet particles = particles_at(points);
   const Kernels kernels(particles, {field_of_all(particles, 1, 1, {})});
   Surface surface;

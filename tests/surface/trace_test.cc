@@ -296,17 +296,22 @@ TEST_P(SurfaceTrace, FindsNothingWhereThereIsNothing) {
 }
 
 TEST_P(SurfaceTrace, DoesNotSeeWhatPadsTheLastLeaf) {
-  // Padding lies far out in the direction of (1, 1, 1); this ray would meet it right in its middle.
-  const Balls balls({{0, 0, 0}}, 1);
-  const Point3d outside{0.75, 0.75, 0.75};
+  // Padding lies far out in the direction of (1, 1, 1): seen between these two, were it there.
+  const Balls balls({{2, -2, 0}, {-2, 2, 0}}, 1);
   ASSERT_EQ(balls.kernels.x.size(), Bvh::leaf_size);
-  ASSERT_FALSE(trace(balls.surface, outside, {1, 1, 1}).any());
+  EXPECT_FALSE(trace(balls.surface, {-1, -1, -1}, {1, 1, 1}).any());
   const Vector3f direction(normalize(Vector3d{1, 1, 1}));
-  EXPECT_EQ(num_unoccluded(balls.surface, {outside}, {&direction, 1}, infinity), 1);
-  const Camera camera{outside, {2, 2, 2}, {0, 1, 0}, 45, {}};
-  SurfaceHits hits;
-  trace(balls.surface, {camera_axes(camera), outside, true}, {0, 0, 1, 1, 0, 0, 1, 1}, hits);
-  EXPECT_FALSE(hits[0].any());
+  EXPECT_EQ(num_unoccluded(balls.surface, {{-1, -1, -1}}, {&direction, 1}, infinity), 1);
+  const Camera camera{{-1, -1, -1}, {0, 0, 0}, {0, 1, 0}, 45, {}};
+  // Sixteen digits leave it where it is to about a radius: one of some rays would meet it.
+  for (const double step : {0.02, 0.25}) {
+    SurfaceHits hits;
+    trace(balls.surface, {camera_axes(camera), camera.eye, true},
+          {0, 0, step, step, -40, -40, 81, 81}, hits);
+    for (std::size_t i = 0; i < hits.depth.size(); ++i) {
+      ASSERT_TRUE(!hits[i].any() || hits.depth[i] < 10) << i;
+    }
+  }
 }
 
 TEST_P(SurfaceTrace, TellsTheSameOfARayWhateverTheOthersAre) {
@@ -328,8 +333,8 @@ TEST_P(SurfaceTrace, TellsTheSameOfARayWhateverTheOthersAre) {
     trace(scene.surface, random.view, piece, part);
     for (int i = 0; i < static_cast<int>(piece.size()); ++i) {
       const SurfaceHit one = part[static_cast<std::size_t>(i)];
-      const SurfaceHit same =
-          all[static_cast<std::size_t>((i / piece.width + 14) * grid.width + i % piece.width + 9)];
+      const int in_all = (i / piece.width + 14) * grid.width + i % piece.width + 9;
+      const SurfaceHit same = all[static_cast<std::size_t>(in_all)];
       ASSERT_EQ(one.depth, same.depth) << scene.description;
       ASSERT_EQ(one.particle, same.particle) << scene.description;
       ASSERT_EQ(one.stick, same.stick) << scene.description;
@@ -344,6 +349,7 @@ RC_GTEST_PROP(SurfaceTraceOfALattice, AgreesWithBruteForce, ()) {
       rc::gen::container<std::vector<std::array<int, 3>>>(
           rc::gen::container<std::array<int, 3>>(rc::gen::inRange(-2, 3))));
   std::vector<Point3d> points;
+  points.reserve(places.size());
   for (const auto& [x, y, z] : places) points.emplace_back(0.5 * x, 0.5 * y, 0.5 * z);
   const Balls balls(points, 0.125f * static_cast<float>(*rc::gen::inRange(1, 9)));
   SurfaceView view = balls.view({0, 0, 8}, {0, 0, 0});

@@ -95,7 +95,7 @@ OcclusionTimes time_occlusion(const Picture& picture, const PictureHits& hits, c
   const Stopwatch stopwatch;
   tbb::parallel_for(0, picture.num_tiles(), [&](int i) {
     const RayGrid grid = picture.tile(i);
-    std::vector<Vector3f> directions(occlusion_samples);
+    std::vector<Vector3f> directions;
     for (int k = 0; k < static_cast<int>(grid.size()); ++k) {
       const int column = grid.column + k % grid.width, row = grid.row + k / grid.width;
       const SurfaceHit hit = hits[static_cast<std::size_t>(i)][static_cast<std::size_t>(k)];
@@ -105,11 +105,10 @@ OcclusionTimes time_occlusion(const Picture& picture, const PictureHits& hits, c
           axes.forward + (grid.u + column * grid.du) * axes.x + (grid.v + row * grid.dv) * axes.y;
       const Vector3d normal(hit.normal);
       const Across sides = across(normal);
-      const int first = occlusion_samples * pattern_class(column / 4, row / 4);
-      for (int s = 0; s < occlusion_samples; ++s) {
-        const Vector3d d(sky[static_cast<std::size_t>(first + s)]);
-        directions[static_cast<std::size_t>(s)] =
-            Vector3f(d.x * sides.x + d.y * sides.y + d.z * normal);
+      directions.clear();
+      for (const Vector3f& direction : directions_of(sky, pattern_number(column / 4, row / 4))) {
+        const Vector3d d(direction);
+        directions.emplace_back(d.x * sides.x + d.y * sides.y + d.z * normal);
       }
       const SurfacePoint point{picture.view.eye + hit.depth * to, hit.particle, hit.stick};
       unoccluded += static_cast<std::size_t>(count(point, directions));
