@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string_view>
 #include <utility>
 
 #include "core/error.h"
@@ -127,7 +128,7 @@ std::vector<std::uint32_t> colors_of(const ParticleSet& particles, const Geometr
 
 std::vector<Bond> bonds_of(const ParticleSet& particles, BondSource source, Warnings& warnings) {
   if (source == BondSource::file && particles.bonds.empty()) {
-    throw Error("bonds: the file has none; expected \"distance\", or a file with bonds");
+    throw Error("the file has none; expected \"distance\", or a file with bonds");
   }
   const bool of_file =
       source == BondSource::file || (source == BondSource::automatic && !particles.bonds.empty());
@@ -143,20 +144,31 @@ struct Drawn {
   explicit Drawn(std::size_t n) : any(n), radius(n), srgb(n) {}
 };
 
+/// What `get` gives; what it throws is of that key.
+template <class Get>
+auto with_key(std::string_view key, Get&& get) {
+  try {
+    return get();
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: {}", key, error.what()));
+  }
+}
+
 void add_item(const ParticleSet& particles, const Geometry& item, Drawn& drawn,
               GeometrySource& source, Warnings& warnings) {
-  const auto index = select_particles(particles, item.select);
+  const auto index = with_key("select", [&] { return select_particles(particles, item.select); });
   if (index.empty()) throw Error("select: takes none of the particles");
-  const auto colors = colors_of(particles, item, index);
+  const auto colors = with_key("color", [&] { return colors_of(particles, item, index); });
   std::vector<float> radii;
   if (item.type == Geometry::Type::spheres) {
-    radii = radii_of(particles, item, index, warnings);
+    radii = with_key("radius", [&] { return radii_of(particles, item, index, warnings); });
   } else {
     source.stick_radius = static_cast<float>(std::get<double>(item.radius));
     radii.assign(index.size(), source.stick_radius);
     std::vector<bool> selected(particles.size());
     for (const std::uint32_t i : index) selected[i] = true;
-    for (const Bond& bond : bonds_of(particles, item.bonds, warnings)) {
+    for (const Bond& bond :
+         with_key("bonds", [&] { return bonds_of(particles, item.bonds, warnings); })) {
       if (selected[bond.first] && selected[bond.second]) source.bonds.push_back(bond);
     }
   }

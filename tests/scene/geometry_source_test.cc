@@ -89,9 +89,9 @@ TEST(GeometrySource, RefusesWithOneClearLine) {
   EXPECT_THAT(message_of(R"([{"type": "spheres", "color": "blu"}])"),
               HasSubstr("geometry[0].color: expected \"element\""));
   EXPECT_THAT(message_of(R"([{"type": "spheres", "radius": "siez"}])"),
-              HasSubstr("unknown property 'siez'; did you mean 'size'?"));
+              HasSubstr("geometry[0].radius: unknown property 'siez'; did you mean 'size'?"));
   EXPECT_THAT(message_of(R"([{"type": "spheres", "select": {"species": "Si"}}])"),
-              HasSubstr("unknown species 'Si'"));
+              HasSubstr("geometry[0].select: unknown species 'Si'"));
   EXPECT_THAT(message_of(R"([{"type": "sticks", "bonds": "file"}])"),
               HasSubstr("geometry[0].bonds: the file has none"));
 }
