@@ -75,8 +75,10 @@ constexpr double no_limit = -std::numeric_limits<double>::infinity();
 constexpr NumberRange any_number{no_limit, -no_limit, true, "a number"};
 constexpr NumberRange positive{0, -no_limit, true, "a number greater than 0"};
 constexpr NumberRange opacity{0, 1, true, "a number greater than 0 and not more than 1"};
+constexpr NumberRange ray_count{-1, 4096, true, "a whole number from 0 to 4096"};
 constexpr NumberRange angle{0, 180, false, "an angle greater than 0 and less than 180 degrees"};
 
+/// `range` outlives the command.
 void add_number(CLI::App& command, SceneChanges& changes, const std::string& name,
                 const std::string& placeholder, const std::string& description,
                 const NumberRange& range, std::function<void(Scene&, double)> set) {
@@ -379,11 +381,10 @@ void add_picture_options(CLI::App& command, SceneChanges& changes) {
   add_option(command, changes, "--style", "NAME",
              "volume, spheres, ball-and-stick or volume+balls, in place of the scene's geometry",
              read_style);
-  add_number(command, changes, "--ambient-occlusion", "N",
-             "rays a pixel for the ambient occlusion of balls and sticks (default: 16)",
-             {-1, 4096, true, "a whole number from 0 to 4096"}, [](Scene& scene, double v) {
-               scene.render.surface.occlusion_samples = static_cast<int>(v);
-             });
+  add_number(
+      command, changes, "--ambient-occlusion", "N",
+      "rays a pixel for the ambient occlusion of balls and sticks (default: 16)", ray_count,
+      [](Scene& scene, double v) { scene.render.surface.occlusion_samples = static_cast<int>(v); });
   add_option(command, changes, "--engine", "NAME",
              "sweep, coherent, direct or cells (default: sweep)", read_engine);
 }

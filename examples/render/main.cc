@@ -14,8 +14,11 @@ int main(int argc, char** argv) try {
   const auto fields = motes::expand_fields(scene, particles);
   const auto sources = motes::make_field_sources(particles, fields, scene.kernel, warnings);
 
-  const motes::Renderer renderer(particles, sources);
-  const auto resolved = motes::resolve(scene, particles, fields, sources, renderer.kernels());
+  const auto geometry = motes::make_geometry_source(particles, scene.geometry, warnings);
+
+  const motes::Renderer renderer(particles, sources, geometry);
+  const auto resolved =
+      motes::resolve(scene, particles, fields, sources, geometry, renderer.kernels());
   const motes::Framebuffer image = renderer.render(resolved, {});
   motes::write_image(argv[2], image, scene.render.termination_opacity, scene.render.background);
 

@@ -235,9 +235,10 @@ class AreaSweep {
         sum_by_columns<C>(shape, gathered, frame, pixels, first, evaluations);
       }
     };
-    if (context_.count_inside) {
-      sum.template operator()<Channels<false, false, Shape::is_product, Shape>>();
-    } else if (!context_.gradients) {
+    if constexpr (Shape::is_product) {
+      if (context_.count_inside) return sum.template operator()<Channels<false, false, true>>();
+    }
+    if (!context_.gradients) {
       sum.template operator()<Channels<false, false, false, Shape>>();
     } else if (context_.absolute) {
       sum.template operator()<Channels<true, true, false, Shape>>();

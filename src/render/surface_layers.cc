@@ -43,6 +43,7 @@ void find_layers(const SurfaceFrame& frame, double thickness, const Tile& tile, 
   static thread_local std::vector<Hit> hits;
   render_surface(frame, {tile.x, tile.y, tile.width, tile.height}, samples);
   const int n = frame.plane.samples;
+  const auto num_rays = static_cast<std::size_t>(n) * static_cast<std::size_t>(n);
   out.width = tile.width;
   out.layers.clear();
   out.begin.assign(1, 0);
@@ -57,7 +58,7 @@ void find_layers(const SurfaceFrame& frame, double thickness, const Tile& tile, 
       }
       std::stable_sort(hits.begin(), hits.end(),
                        [](const Hit& a, const Hit& b) { return a.depth < b.depth; });
-      add_layers(hits, static_cast<std::size_t>(n * n), thickness, out.layers);
+      add_layers(hits, num_rays, thickness, out.layers);
       out.begin.push_back(static_cast<std::uint32_t>(out.layers.size()));
     }
   }
