@@ -22,8 +22,10 @@ GeometrySource balls(std::vector<std::uint32_t> index, float radius) {
 /// Particles on a grid, off the axes.
 std::vector<Point3d> some_points() {
   std::vector<Point3d> points;
+  points.reserve(60);
   for (int i = 0; i < 60; ++i) {
-    points.push_back({1.7 * (i % 4) - 2.6, 1.9 * (i / 4 % 4) - 2.7, 1.6 * (i / 16) - 2.4});
+    const int column = i % 4, row = i / 4 % 4, plane = i / 16;
+    points.push_back({1.7 * column - 2.6, 1.9 * row - 2.7, 1.6 * plane - 2.4});
   }
   return points;
 }

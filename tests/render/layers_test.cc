@@ -20,7 +20,8 @@ PixelLayers random_layers(const ResolvedScene& scene, const Bounds3d& box, std::
   const auto uniform = [&] { return (random() + 0.5) / 4294967296.0; };
   const double middle = length(box.center() - scene.camera.eye);
   const double size = length(box.diagonal());
-  PixelLayers layers(static_cast<std::size_t>(scene.render.width * scene.render.height));
+  const int num_pixels = scene.render.width * scene.render.height;
+  PixelLayers layers(static_cast<std::size_t>(num_pixels));
   for (auto& of_pixel : layers) {
     if (uniform() < 0.3) continue;
     const auto count = 1 + random() % 4;
@@ -45,7 +46,8 @@ LayerSource source_of(const PixelLayers& layers, int width, double length_scale)
     out.layers.clear();
     for (int i = 0; i < tile.width * tile.height; ++i) {
       const int x = tile.x + i % tile.width, y = tile.y + i / tile.width;
-      for (const reference::Layer& layer : layers[static_cast<std::size_t>(y * width + x)]) {
+      const int pixel = y * width + x;
+      for (const reference::Layer& layer : layers[static_cast<std::size_t>(pixel)]) {
         out.layers.push_back({layer.depth * length_scale,
                               static_cast<float>(layer.opacity),
                               {static_cast<float>(layer.red), static_cast<float>(layer.green),

@@ -13,14 +13,13 @@
 namespace motes {
 namespace {
 
-using testing::DoubleNear;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
 std::filesystem::path write_file(const std::string& text) {
   // Tests run side by side.
   const std::string test = testing::UnitTest::GetInstance()->current_test_info()->name();
-  const auto path = std::filesystem::path(testing::TempDir()) / (test + "_profile.txt");
+  auto path = std::filesystem::path(testing::TempDir()) / (test + "_profile.txt");
   std::ofstream(path) << text;
   return path;
 }
