@@ -27,7 +27,9 @@ class MacroCells {
   /// Bounds of the field in block (i, j, k), its faces included: index coordinates from size * i to
   /// size * (i + 1), and so on. Wide enough for the hot path's rounding. Hot: unchecked.
   const Range& at(int i, int j, int k) const {
-    return ranges_[static_cast<std::size_t>((k * dims_[1] + j) * dims_[0] + i)];
+    const int row = k * dims_[1] + j;
+    const auto first = static_cast<std::size_t>(row) * static_cast<std::size_t>(dims_[0]);
+    return ranges_[first + static_cast<std::size_t>(i)];
   }
 
  private:
