@@ -27,9 +27,9 @@ class MacroCells {
   /// Bounds of the field in block (i, j, k), its faces included: index coordinates from size * i to
   /// size * (i + 1), and so on. Wide enough for the hot path's rounding. Hot: unchecked.
   const Range& at(int i, int j, int k) const {
-    const int row = k * dims_[1] + j;
-    const auto first = static_cast<std::size_t>(row) * static_cast<std::size_t>(dims_[0]);
-    return ranges_[first + static_cast<std::size_t>(i)];
+    const auto row = static_cast<std::size_t>(k) * static_cast<std::size_t>(dims_[1]) +
+                     static_cast<std::size_t>(j);
+    return ranges_[row * static_cast<std::size_t>(dims_[0]) + static_cast<std::size_t>(i)];
   }
 
  private:
