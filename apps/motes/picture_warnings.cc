@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace motes {
 namespace {
@@ -16,8 +15,7 @@ constexpr float least_visible = 1.0f / 255;
 bool any_in_view(const KernelSet& kernels, const Camera& camera, double aspect) {
   const CameraAxes axes = camera_axes(camera);
   const bool parallel = camera.orthographic_height.has_value();
-  const double tan_y = parallel ? *camera.orthographic_height / 2
-                                : std::tan(camera.fov_degrees * std::numbers::pi / 360);
+  const double tan_y = half_height(camera);
   // Whether the sphere reaches over the edge of the image that is `tangent` from its middle.
   const auto inside = [&](double across, double depth, double radius, double tangent) {
     if (parallel) return std::abs(across) - radius <= tangent;

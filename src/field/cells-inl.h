@@ -120,15 +120,9 @@ HWY_NOINLINE SampleSums evaluate_cell(const SamplingConstants& constants, int f,
                                       const CellKernels& kernels, const SamplePlace& sample) {
   SampleSums sums;
   const FieldConstants& field = constants.fields[f];
-  const FieldKernels& of_field = *constants.kernels[f];
-  const auto add = [&](const auto& shape) HWY_ATTR {
+  with_shape(constants, static_cast<std::size_t>(f), [&](const auto& shape) HWY_ATTR {
     add_kernels<kGradients>(shape, field, f, one_field, sample, kernels, sums);
-  };
-  if (of_field.kernel.shape.type == KernelType::gaussian) {
-    add(GaussianShape{field.threshold});
-  } else {
-    with_shape(of_field, add);
-  }
+  });
   return sums;
 }
 

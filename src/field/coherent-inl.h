@@ -121,11 +121,12 @@ HWY_INLINE std::uint64_t accumulate_leaf(const KernelSet& kernels,
                               static_cast<int>(placed.last[i])};
     buffer.touch(buffer_offset + kernel.first, buffer_offset + kernel.last);
     float* const values = buffer.at(buffer_offset + kernel.first, static_cast<int>(f));
+    // Not by a call where the kernel is what most are.
     if (HWY_LIKELY(constants.kernels[f]->kernel.shape.type == KernelType::gaussian)) {
       accumulate<kGradients, kAbsolute>(GaussianShape{field.threshold}, frame, kernel, values,
                                         stride);
     } else {
-      with_shape(*constants.kernels[f], [&](const auto& shape) {
+      with_shape(constants, f, [&](const auto& shape) {
         accumulate_apart<kGradients, kAbsolute>(shape, frame, kernel, values, stride);
       });
     }

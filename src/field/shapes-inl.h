@@ -61,8 +61,8 @@ HWY_INLINE V below(D d, float reach, V q) {
   return hn::Max(hn::Sub(hn::Set(d, reach), q), hn::Zero(d));
 }
 
-// What all others have in common: they are functions of q^2, and where their support ends they come
-// to zero by themselves.
+/// What all others have in common: they are functions of q^2, and where their support ends they
+/// come to zero by themselves.
 struct SumShape {
   static constexpr bool is_product = false;
   static constexpr float distance_scale = 1;
@@ -104,11 +104,23 @@ struct QuinticSplineShape : SumShape {
   }
 };
 
+/// Wendland's kernels are powers of t = 1 - q / 2 times polynomials in q.
+template <class V>
+struct WendlandPlace {
+  V q, t;
+};
+
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE WendlandPlace<V> wendland_place(D d, V q_sq) {
+  const V q = hn::Mul(q_sq, inverse_sqrt(d, q_sq));
+  const V t = hn::NegMulAdd(hn::Set(d, 0.5f), q, hn::Set(d, 1.0f));
+  return {q, hn::Max(t, hn::Zero(d))};
+}
+
 struct WendlandC2Shape : SumShape {
   template <bool kSteepness, class D, class V = hn::Vec<D>>
   HWY_INLINE RadialLanes<V> at(D d, V q_sq) const {
-    const V q = hn::Mul(q_sq, inverse_sqrt(d, q_sq));
-    const V t = hn::Max(hn::NegMulAdd(hn::Set(d, 0.5f), q, hn::Set(d, 1.0f)), hn::Zero(d));
+    const auto [q, t] = wendland_place(d, q_sq);
     const V t_3 = hn::Mul(hn::Mul(t, t), t);
     const V value = hn::Mul(hn::Mul(t_3, t), hn::MulAdd(hn::Set(d, 2.0f), q, hn::Set(d, 1.0f)));
     return {value, hn::Mul(hn::Set(d, 5.0f), t_3)};
@@ -118,9 +130,8 @@ struct WendlandC2Shape : SumShape {
 struct WendlandC4Shape : SumShape {
   template <bool kSteepness, class D, class V = hn::Vec<D>>
   HWY_INLINE RadialLanes<V> at(D d, V q_sq) const {
+    const auto [q, t] = wendland_place(d, q_sq);
     const V one = hn::Set(d, 1.0f);
-    const V q = hn::Mul(q_sq, inverse_sqrt(d, q_sq));
-    const V t = hn::Max(hn::NegMulAdd(hn::Set(d, 0.5f), q, one), hn::Zero(d));
     const V t_2 = hn::Mul(t, t), t_5 = hn::Mul(hn::Mul(t_2, t_2), t);
     const V polynomial =
         hn::MulAdd(q, hn::MulAdd(q, hn::Set(d, 35.0f / 12), hn::Set(d, 3.0f)), one);
@@ -132,9 +143,8 @@ struct WendlandC4Shape : SumShape {
 struct WendlandC6Shape : SumShape {
   template <bool kSteepness, class D, class V = hn::Vec<D>>
   HWY_INLINE RadialLanes<V> at(D d, V q_sq) const {
+    const auto [q, t] = wendland_place(d, q_sq);
     const V one = hn::Set(d, 1.0f);
-    const V q = hn::Mul(q_sq, inverse_sqrt(d, q_sq));
-    const V t = hn::Max(hn::NegMulAdd(hn::Set(d, 0.5f), q, one), hn::Zero(d));
     const V t_2 = hn::Mul(t, t), t_4 = hn::Mul(t_2, t_2), t_7 = hn::Mul(hn::Mul(t_4, t_2), t);
     V polynomial = hn::MulAdd(q, hn::Set(d, 4.0f), hn::Set(d, 6.25f));
     polynomial = hn::MulAdd(q, hn::MulAdd(q, polynomial, hn::Set(d, 4.0f)), one);
@@ -230,12 +240,13 @@ struct SmallTableShape : SumShape {
 };
 #endif
 
-/// Calls use(shape) with the shape of a field's kernels, if they are no Gaussians.
+/// Calls use(shape) with the shape of field f's kernels.
 template <class Use>
-HWY_INLINE void with_shape(const FieldKernels& field, Use&& use) {
+HWY_INLINE void with_shape(const SamplingConstants& constants, std::size_t f, Use&& use) {
+  const FieldKernels& field = *constants.kernels[f];
   switch (field.kernel.shape.type) {
     case KernelType::gaussian:
-      return;
+      return use(GaussianShape{constants.fields[f].threshold});
     case KernelType::cubic_spline:
       return use(CubicSplineShape{});
     case KernelType::quintic_spline:

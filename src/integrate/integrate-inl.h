@@ -141,15 +141,6 @@ class Integrator {
     block.store_colors(d, rays);
   }
 
-  /// Composites the layers behind the last samples.
-  void finish(BlockLayers& layers, RayState& rays) const {
-    const LaneTag d;
-    BlockRays block;
-    block.load_colors(d, rays);
-    composite_rest(d, hn::Set(d, frame_.constants.termination_opacity), layers, block);
-    block.store_colors(d, rays);
-  }
-
   /// The same for any number of samples of which it is not known yet which may be seen.
   void run(const Slab& slab, SampleBuffer& buffer, RayState& rays,
            BlockLayers* layers = nullptr) const {
@@ -170,6 +161,15 @@ class Integrator {
            static_cast<std::size_t>(layout.channels() * layout.lanes)},
           visible, rays, layers);
     }
+  }
+
+  /// Composites the layers behind the rays' last samples.
+  void finish(BlockLayers& layers, RayState& rays) const {
+    const LaneTag d;
+    BlockRays block;
+    block.load_colors(d, rays);
+    composite_rest(d, hn::Set(d, frame_.constants.termination_opacity), layers, block);
+    block.store_colors(d, rays);
   }
 
  private:

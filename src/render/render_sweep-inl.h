@@ -206,12 +206,7 @@ class AreaSweep {
       const auto sum = [&](const auto& shape) {
         sum_group(shape, gathered, frame, pixels, first, batch.count, evaluations);
       };
-      const FieldKernels& field = *constants_.kernels[constants_.first_field[g]];
-      if (field.kernel.shape.type == KernelType::gaussian) {
-        sum(GaussianShape{});
-      } else {
-        with_shape(field, sum);
-      }
+      with_shape(constants_, constants_.first_field[g], sum);
     }
     for (int row = 0; row < AreaBuffer::groups; ++row) {
       for (int column = 0; column < AreaBuffer::groups; column += taken_groups) {

@@ -11,8 +11,8 @@
 #include "image/framebuffer.h"
 #include "integrate/classifier.h"
 #include "integrate/shading.h"
-#include "render/layer_source.h"
 #include "render/stages.h"
+#include "samples/layers.h"
 #include "samples/samples.h"
 #include "scene/scene.h"
 

@@ -30,6 +30,11 @@ Point3d to_internal(const KernelSet& kernels, const Point3d& p) {
   return {v.x, v.y, v.z};
 }
 
+/// half_height() in internal lengths where it is a length.
+double internal_half_height(const KernelSet& kernels, const Camera& camera) {
+  return half_height(camera) * (camera.orthographic_height ? kernels.length_scale : 1);
+}
+
 ShadingConstants make_shading(const ResolvedScene& scene, const CameraAxes& axes,
                               const KernelSet& kernels) {
   const Lighting& lighting = scene.render.lighting;
@@ -91,9 +96,7 @@ FrameContext make_context(const KernelSet& kernels, const ResolvedScene& scene,
   context.width = scene.render.width;
   context.height = scene.render.height;
   context.orthographic = scene.camera.orthographic_height.has_value();
-  context.half_height = context.orthographic
-                            ? 0.5 * *scene.camera.orthographic_height * kernels.length_scale
-                            : std::tan(0.5 * scene.camera.fov_degrees * std::numbers::pi / 180);
+  context.half_height = internal_half_height(kernels, scene.camera);
   context.half_width = context.half_height * context.width / context.height;
   const Bounds3d box = kernels.box();
   context.box = {to_internal(kernels, box.min), to_internal(kernels, box.max)};
@@ -134,11 +137,8 @@ constexpr double merged_steps = 0.1;
 SurfaceFrame frame_of(const Surface& surface, const ResolvedScene& scene) {
   const KernelSet& kernels = *surface.kernels;
   const SurfaceSettings& settings = scene.render.surface;
-  const bool orthographic = scene.camera.orthographic_height.has_value();
   ImagePlane plane;
-  plane.half_height = orthographic
-                          ? 0.5 * *scene.camera.orthographic_height * kernels.length_scale
-                          : std::tan(0.5 * scene.camera.fov_degrees * std::numbers::pi / 180);
+  plane.half_height = internal_half_height(kernels, scene.camera);
   plane.width = scene.render.width;
   plane.height = scene.render.height;
   plane.half_width = plane.half_height * plane.width / plane.height;
@@ -151,9 +151,10 @@ SurfaceFrame frame_of(const Surface& surface, const ResolvedScene& scene) {
   }
   shading.shadows = settings.shadows;
   shading.light_radius = 0.5 * settings.light_angle * std::numbers::pi / 180;
-  return make_surface_frame(
-      surface, {camera_axes(scene.camera), to_internal(kernels, scene.camera.eye), orthographic},
-      plane, shading);
+  return make_surface_frame(surface,
+                            {camera_axes(scene.camera), to_internal(kernels, scene.camera.eye),
+                             scene.camera.orthographic_height.has_value()},
+                            plane, shading);
 }
 
 /// Calls work(tile) for all tiles of the image, in parallel.
@@ -250,6 +251,7 @@ Framebuffer Renderer::render(const ResolvedScene& scene, const RenderOptions& op
 void Renderer::render(const ResolvedScene& scene, const RenderOptions& options, Framebuffer& image,
                       RenderStatistics* statistics) const {
   assert(scene.transfer_functions.size() == kernels_->fields.size());
+  assert(scene.step_size > 0);
   const std::string target = instruction_set();
   const Stopwatch stopwatch;
   if (image.width != scene.render.width || image.height != scene.render.height) {
@@ -270,7 +272,7 @@ void Renderer::render(const ResolvedScene& scene, const RenderOptions& options, 
     }
   } else {
     FrameContext context = make_context(*kernels_, scene, options);
-    if (surface) {
+    if (surface && !context.layers) {
       const double thickness = merged_steps * context.view.planes.step;
       context.layers = [&surface, thickness](const Tile& tile, TileLayers& out) {
         find_layers(*surface, thickness, tile, out);

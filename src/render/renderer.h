@@ -12,8 +12,8 @@
 #include "field/kernel_set.h"
 #include "image/framebuffer.h"
 #include "particles/particle_set.h"
-#include "render/layer_source.h"
 #include "render/stages.h"
+#include "samples/layers.h"
 #include "scene/scene.h"
 #include "surface/surface.h"
 
@@ -26,7 +26,8 @@ struct RenderOptions {
   /// to 32, in whole eights.
   std::optional<int> samples_per_pass = std::nullopt;
   Progress* progress = nullptr;
-  /// Surfaces in the way of the rays; empty: none.
+  /// Surfaces in the way of rays through fields, in place of the renderer's own geometry; empty:
+  /// that.
   LayerSource layers = {};
   /// Fills RenderStatistics::evaluations_inside too, if the engine is the sweep. For a frame of its
   /// own, that is neither measured nor shown: counting takes time, and the picture is not lit.
@@ -67,8 +68,8 @@ class Renderer {
 
   /// Takes the next frame of moving particles, with the kernels of `fields`. Refits the tree as
   /// long as the fields keep their numbers of particles and the tree has not lost its worth; else,
-  /// and the first time, builds it anew, which from then on keeps 4 more bytes a particle. Needs
-  /// neither argument afterwards. Throws what the constructor throws.
+  /// the first time and where there is geometry, builds it anew, which from then on keeps 4 more
+  /// bytes a particle. Needs none of the arguments afterwards. Throws what the constructor throws.
   TreeUpdate set_particles(const ParticleSet& particles, const std::vector<FieldSource>& fields,
                            const GeometrySource& geometry = {});
 

@@ -12,7 +12,7 @@ namespace motes {
 
 /// Parts of the work on a tile. For the paper's way all of pass 1 is `sums`.
 enum class Stage {
-  setup,      ///< rays before their first sample, pixels after their last
+  setup,      ///< rays before their first sample, surfaces in their way, pixels after their last
   traverse,   ///< kernels that reach an area of tiles
   cull,       ///< what those of them reach of the area
   sums,       ///< kernels' values, added to samples

@@ -41,7 +41,7 @@ void add_layers(const std::vector<Hit>& hits, std::size_t num_rays, double thick
 void find_layers(const SurfaceFrame& frame, double thickness, const Tile& tile, TileLayers& out) {
   static thread_local SurfaceSamples samples;
   static thread_local std::vector<Hit> hits;
-  render_surface(frame, {tile.x, tile.y, tile.width, tile.height}, samples);
+  render_surface(frame, tile, samples);
   const int n = frame.plane.samples;
   const auto num_rays = static_cast<std::size_t>(n) * static_cast<std::size_t>(n);
   out.width = tile.width;

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "image/framebuffer.h"
-#include "render/layer_source.h"
+#include "samples/layers.h"
 #include "surface/shade.h"
 
 namespace motes {

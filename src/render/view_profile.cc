@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <random>
 #include <span>
 
@@ -21,11 +20,8 @@ struct Ray {
 
 /// The ray through the point (s, t) of the image, both in [0, 1], from the left and from the top.
 Ray view_ray(const Camera& camera, const CameraAxes& axes, double aspect, double s, double t) {
-  const double half_height = camera.orthographic_height
-                                 ? 0.5 * *camera.orthographic_height
-                                 : std::tan(0.5 * camera.fov_degrees * std::numbers::pi / 180);
-  const Vector3d across =
-      (2 * s - 1) * half_height * aspect * axes.x + (1 - 2 * t) * half_height * axes.y;
+  const double half = half_height(camera);
+  const Vector3d across = (2 * s - 1) * half * aspect * axes.x + (1 - 2 * t) * half * axes.y;
   if (camera.orthographic_height) return {camera.eye + across, axes.forward};
   return {camera.eye, across + axes.forward};
 }

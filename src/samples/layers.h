@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <iterator>
 #include <limits>
 #include <span>
@@ -36,6 +37,9 @@ struct TileLayers {
     return std::span(layers).subspan(begin[pixel], begin[pixel + 1] - begin[pixel]);
   }
 };
+
+/// Sets the layers of a tile's pixels. Called by many threads at once.
+using LayerSource = std::function<void(const Tile&, TileLayers&)>;
 
 /// Those of a block's rays, [layer][lane], with their places among the samples: sample k stands for
 /// depths (first + k) step to (first + k + 1) step of its SamplePlanes.

@@ -31,6 +31,11 @@ struct Slab {
   int count = 0;
 };
 
+/// Pixels x to x + width - 1, y to y + height - 1.
+struct Tile {
+  int x = 0, y = 0, width = 0, height = 0;
+};
+
 /// Widest vector of floats of any instruction set.
 inline constexpr int max_lanes = 16;
 

@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <numbers>
+
 #include "core/error.h"
 
 namespace motes {
@@ -47,6 +50,11 @@ CameraAxes camera_axes(const Camera& camera) {
   axes.x = normalize(right);
   axes.y = cross(axes.x, axes.forward);
   return axes;
+}
+
+double half_height(const Camera& camera) {
+  if (camera.orthographic_height) return 0.5 * *camera.orthographic_height;
+  return std::tan(0.5 * camera.fov_degrees * std::numbers::pi / 180);
 }
 
 }  // namespace motes

@@ -27,4 +27,8 @@ struct CameraAxes {
 /// Throws Error if eye and target coincide, up is parallel to the view, or fov is out of range.
 CameraAxes camera_axes(const Camera& camera);
 
+/// Half of the image's height at depth 1: a tangent; of an orthographic camera half of its height,
+/// a length.
+double half_height(const Camera& camera);
+
 }  // namespace motes

@@ -169,7 +169,12 @@ Camera fit_camera(const Scene& scene, const std::vector<VisibleSphere>& spheres,
     }
     distance = nearest + 0.01 * diagonal;
   }
-  camera.eye = camera.target - std::max(distance, 1e-3 * diagonal) * axes.forward;
+  // Wide views come so near that a point could be in the eye itself.
+  const double nearest = largest_of(spheres, [&](const VisibleSphere& sphere) {
+    return -dot(sphere.center - camera.target, axes.forward);
+  });
+  distance = std::max({distance, 1e-3 * diagonal, nearest + 1e-9 * diagonal});
+  camera.eye = camera.target - distance * axes.forward;
   return camera;
 }
 

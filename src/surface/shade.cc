@@ -42,27 +42,27 @@ Color phong(const Lighting& lighting, const Color& base, const Vector3d& normal,
                 lit * lighting.specular * static_cast<double>(gloss));
 }
 
-/// One rect on its way.
-class RectShader {
+/// One tile on its way.
+class TileShader {
  public:
-  RectShader(const SurfaceFrame& frame, const PixelRect& rect)
+  TileShader(const SurfaceFrame& frame, const Tile& tile)
       : frame_(frame),
         shading_(frame.shading),
         n_(frame.plane.samples),
         margin_(has_spots() ? pattern_side / 2 : 0),
-        rect_(rect) {}
+        tile_(tile) {}
 
   void run(SurfaceSamples& out) {
     make_grid();
     trace(*frame_.surface, frame_.view, grid_, hits_);
     if (has_spots()) light_spots();
     const auto rays_per_pixel = static_cast<std::size_t>(n_) * static_cast<std::size_t>(n_);
-    const std::size_t size = static_cast<std::size_t>(rect_.width) *
-                             static_cast<std::size_t>(rect_.height) * rays_per_pixel;
+    const std::size_t size = static_cast<std::size_t>(tile_.width) *
+                             static_cast<std::size_t>(tile_.height) * rays_per_pixel;
     out.depth.resize(size);
     out.color.resize(size);
-    for (int y = 0; y < rect_.height; ++y) {
-      for (int x = 0; x < rect_.width; ++x) shade_pixel(x, y, out);
+    for (int y = 0; y < tile_.height; ++y) {
+      for (int x = 0; x < tile_.width; ++x) shade_pixel(x, y, out);
     }
   }
 
@@ -71,17 +71,17 @@ class RectShader {
   bool has_soft_shadows() const { return has_shadows() && shading_.light_radius > 0; }
   bool has_spots() const { return shading_.occlusion_samples > 0 || has_soft_shadows(); }
 
-  /// The rays of the rect and of a margin around it, over which light is evened out.
+  /// The rays of the tile and of a margin around it, over which light is evened out.
   void make_grid() {
     const ImagePlane& plane = frame_.plane;
     grid_.du = 2 * plane.half_width / (plane.width * n_);
     grid_.dv = -2 * plane.half_height / (plane.height * n_);
     grid_.u = 0.5 * grid_.du - plane.half_width;
     grid_.v = 0.5 * grid_.dv + plane.half_height;
-    grid_.column = n_ * (rect_.x - margin_);
-    grid_.row = n_ * (rect_.y - margin_);
-    grid_.width = n_ * (rect_.width + 2 * margin_);
-    grid_.height = n_ * (rect_.height + 2 * margin_);
+    grid_.column = n_ * (tile_.x - margin_);
+    grid_.row = n_ * (tile_.y - margin_);
+    grid_.width = n_ * (tile_.width + 2 * margin_);
+    grid_.height = n_ * (tile_.height + 2 * margin_);
   }
 
   /// A ray of the grid, and what it hits.
@@ -91,7 +91,7 @@ class RectShader {
     SurfaceHit hit;
     SurfacePoint point() const { return {origin + hit.depth * direction, hit.particle, hit.stick}; }
   };
-  /// Ray i of pixel (x, y), counted from the rect's first.
+  /// Ray i of pixel (x, y), counted from the tile's first.
   Ray ray_of(int x, int y, int i) const {
     const int column = n_ * (x + margin_) + i % n_, row = n_ * (y + margin_) + i / n_;
     const CameraAxes& axes = frame_.view.axes;
@@ -106,14 +106,14 @@ class RectShader {
 
   /// Finds the spots, each where the first of its pixel's rays meets it, and their light.
   void light_spots() {
-    spots_.reset(rect_.width + 2 * margin_);
-    for (int y = -margin_; y < rect_.height + margin_; ++y) {
-      for (int x = -margin_; x < rect_.width + margin_; ++x) {
+    spots_.reset(tile_.width + 2 * margin_);
+    for (int y = -margin_; y < tile_.height + margin_; ++y) {
+      for (int x = -margin_; x < tile_.width + margin_; ++x) {
         for (int i = 0; i < n_ * n_; ++i) {
           const Ray ray = ray_of(x, y, i);
           if (ray.hit.any()) spots_.add({ray.point(), Vector3d(ray.hit.normal), {}});
         }
-        const int number = pattern_number(rect_.x + x, rect_.y + y);
+        const int number = pattern_number(tile_.x + x, tile_.y + y);
         for (Spot& spot : spots_.end_pixel()) spot.light = light_of(spot, number);
       }
     }
@@ -158,7 +158,7 @@ class RectShader {
     for (int i = 0; i < n_ * n_; ++i) {
       const Ray ray = ray_of(x, y, i);
       const auto at =
-          static_cast<std::size_t>(n_ * y + i / n_) * static_cast<std::size_t>(n_ * rect_.width) +
+          static_cast<std::size_t>(n_ * y + i / n_) * static_cast<std::size_t>(n_ * tile_.width) +
           static_cast<std::size_t>(n_ * x + i % n_);
       out.depth[at] = ray.hit.depth;
       out.color[at] = {};
@@ -185,7 +185,7 @@ class RectShader {
   const SurfaceFrame& frame_;
   const SurfaceShading& shading_;
   int n_, margin_;
-  PixelRect rect_;
+  Tile tile_;
   RayGrid grid_;
   SurfaceHits hits_;
   Spots spots_;
@@ -207,8 +207,8 @@ SurfaceFrame make_surface_frame(const Surface& surface, const SurfaceView& view,
   return frame;
 }
 
-void render_surface(const SurfaceFrame& frame, const PixelRect& rect, SurfaceSamples& out) {
-  RectShader(frame, rect).run(out);
+void render_surface(const SurfaceFrame& frame, const Tile& tile, SurfaceSamples& out) {
+  TileShader(frame, tile).run(out);
 }
 
 }  // namespace motes

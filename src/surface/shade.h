@@ -10,6 +10,7 @@
 #include "core/aligned.h"
 #include "core/color.h"
 #include "core/vec.h"
+#include "samples/samples.h"
 #include "scene/scene.h"
 #include "surface/surface.h"
 #include "surface/trace.h"
@@ -51,20 +52,15 @@ struct SurfaceFrame {
 SurfaceFrame make_surface_frame(const Surface& surface, const SurfaceView& view,
                                 const ImagePlane& plane, const SurfaceShading& shading);
 
-/// Pixels x to x + width - 1, y to y + height - 1.
-struct PixelRect {
-  int x = 0, y = 0, width = 0, height = 0;
-};
-
-/// The n x n samples of a PixelRect's pixels as a picture of n * width columns and n * height rows.
+/// The n x n samples of a Tile's pixels as a picture of n * width columns and n * height rows.
 struct SurfaceSamples {
   UninitializedVector<double> depth;  ///< along the view; infinity where nothing is hit
   UninitializedVector<Color> color;   ///< linear; of no meaning where nothing is hit
 };
 
-/// Renders `rect` into `out`. What a pixel is depends on the frame and the pixel alone, not on the
-/// rect. Hot: nothing is checked. For one thread; rects of 64 x 64 pixels do well, and larger ones
+/// Renders `tile` into `out`. What a pixel is depends on the frame and the pixel alone, not on the
+/// tile. Hot: nothing is checked. For one thread; tiles of 64 x 64 pixels do well, and larger ones
 /// better where light is evened out, since a margin of 4 pixels is then traced with each.
-void render_surface(const SurfaceFrame& frame, const PixelRect& rect, SurfaceSamples& out);
+void render_surface(const SurfaceFrame& frame, const Tile& tile, SurfaceSamples& out);
 
 }  // namespace motes

@@ -1,4 +1,4 @@
-// Where the pixels of a rect look for light: once for each ball and stick that they show.
+// Where the pixels of a tile look for light: once for each ball and stick that they show.
 #pragma once
 
 #include <cstddef>
@@ -23,7 +23,7 @@ struct Spot {
   Light light;
 };
 
-/// The spots of a rect's pixels, column by column and row by row.
+/// The spots of a tile's pixels, column by column and row by row.
 class Spots {
  public:
   /// Takes back all spots, and begins with the first pixel of so many columns.

@@ -228,7 +228,7 @@ TEST(Shade, TellsTheSameOfAPixelWhateverTheRectAndTheThreads) {
     constexpr int size = 23;  // no divisor of anything
     tbb::parallel_for(0, 25, [&](int i) {
       const int x = i % 5 * size, y = i / 5 * size;
-      const PixelRect rect{x, y, std::min(size, 96 - x), std::min(size, 96 - y)};
+      const Tile rect{x, y, std::min(size, 96 - x), std::min(size, 96 - y)};
       SurfaceSamples part;
       render_surface(frame, rect, part);
       for (int row = 0; row < 2 * rect.height; ++row) {

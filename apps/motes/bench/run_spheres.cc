@@ -43,14 +43,12 @@ struct Picture {
   Picture(const KernelSet& kernels, const Camera& camera, const BenchOptions& options) {
     const Vector3d eye = kernels.length_scale * (camera.eye - kernels.origin);
     view = {camera_axes(camera), {eye.x, eye.y, eye.z}, camera.orthographic_height.has_value()};
-    const double half_height = view.orthographic
-                                   ? 0.5 * *camera.orthographic_height * kernels.length_scale
-                                   : std::tan(camera.fov_degrees * std::numbers::pi / 360);
-    const double half_width = half_height * options.width / options.height;
-    grid.du = 2 * half_width / options.width;
-    grid.dv = -2 * half_height / options.height;
-    grid.u = 0.5 * grid.du - half_width;
-    grid.v = 0.5 * grid.dv + half_height;
+    const double half_v = half_height(camera) * (view.orthographic ? kernels.length_scale : 1);
+    const double half_u = half_v * options.width / options.height;
+    grid.du = 2 * half_u / options.width;
+    grid.dv = -2 * half_v / options.height;
+    grid.u = 0.5 * grid.du - half_u;
+    grid.v = 0.5 * grid.dv + half_v;
     grid.width = (options.width + 7) / 8 * 8;
     grid.height = (options.height + 7) / 8 * 8;
   }
