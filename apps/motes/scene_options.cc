@@ -102,6 +102,22 @@ void add_triple(CLI::App& command, SceneChanges& changes, const std::string& nam
              });
 }
 
+/// Plane after plane, in place of the scene's own.
+SceneChanges::Change read_clip_planes(const std::vector<std::string>& texts) {
+  std::vector<ClipPlane> planes;
+  for (const std::string& text : texts) {
+    const auto comma = text.rfind(',');
+    const auto normal = triple_in(text.substr(0, comma));
+    const auto distance = number_in(text.substr(std::min(comma, text.size() - 1) + 1));
+    if (!normal || !distance || !std::isfinite(*distance)) {
+      bad_value("--clip-plane", "a normal and a distance from the origin such as 0,0,1,12.5", text);
+    }
+    planes.push_back({{(*normal)[0], (*normal)[1], (*normal)[2]}, *distance});
+    if (!(length(planes.back().normal) > 0)) throw Error("--clip-plane: a normal must not be zero");
+  }
+  return [planes](Scene& scene) { scene.render.clip_planes = planes; };
+}
+
 /// Calls `change` for every field; a scene without any gets the one that it stands for.
 void for_each_field(Scene& scene, const std::function<void(Field&)>& change) {
   if (scene.fields.empty()) scene.fields.emplace_back().name = "all";
@@ -378,6 +394,15 @@ void add_picture_options(CLI::App& command, SceneChanges& changes) {
   add_number(command, changes, "--termination-opacity", "A",
              "opacity at which a ray stops (default: 0.97)", opacity,
              [](Scene& scene, double v) { scene.render.termination_opacity = v; });
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--clip-plane",
+          [&changes](const std::vector<std::string>& texts) {
+            changes.add("--clip-plane", read_clip_planes(texts));
+          },
+          "cuts away what lies farther than D along the normal; may be given again")
+      ->type_name("NX,NY,NZ,D")
+      ->allow_extra_args(false);
   add_option(command, changes, "--style", "NAME",
              "volume, spheres, ball-and-stick or volume+balls, in place of the scene's geometry",
              read_style);

@@ -35,6 +35,10 @@ struct FrameContext {
   int samples_per_pass = 32;                 ///< planes of a slab
   bool count_inside = false;                 ///< see TileCounts; the sweep alone, without gradients
   LayerSource layers;                        ///< of surfaces; empty: there are none
+  std::vector<ClipPlane> clip_planes;  ///< unit normals; internal lengths from kernels->origin
+
+  /// Whether rays' steps may be cut, by surfaces or clip planes.
+  bool has_cuts() const { return layers || !clip_planes.empty(); }
 };
 
 struct TileCounts {

@@ -17,6 +17,7 @@
 #include "core/report.h"
 #include "particles/particle_set.h"
 #include "scene/camera.h"
+#include "scene/clip_plane.h"
 #include "scene/geometry.h"
 #include "scene/kernel.h"
 #include "scene/selection.h"
@@ -42,6 +43,7 @@ struct NamedTransferFunction {
 
 /// More than this no engine takes.
 inline constexpr std::size_t max_fields = 64;
+inline constexpr std::size_t max_clip_planes = 16;
 
 struct Field {
   std::string name;
@@ -86,6 +88,7 @@ struct RenderSettings {
   double termination_opacity = 0.97;
   Lighting lighting;
   SurfaceSettings surface;
+  std::vector<ClipPlane> clip_planes;  ///< of the data what none of them cuts away is drawn
   Color background;
   Engine engine = Engine::sweep;
   bool operator==(const RenderSettings&) const = default;

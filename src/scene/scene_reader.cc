@@ -255,9 +255,26 @@ Lighting read_lighting(const Value& value) {
   return lighting;
 }
 
+std::vector<ClipPlane> read_clip_planes(const Value& value) {
+  const auto items = value.array("an array of planes");
+  if (items.size() > max_clip_planes) {
+    value.expected(fmt::format("an array of at most {} planes", max_clip_planes));
+  }
+  std::vector<ClipPlane> planes;
+  for (const Value& item : items) {
+    item.check_keys({"normal", "distance"});
+    ClipPlane& plane = planes.emplace_back();
+    const Value normal = item.at("normal");
+    plane.normal = normal.vector();
+    if (!(length(plane.normal) > 0)) normal.fail("a direction must not be zero");
+    item.with("distance", [&](const Value& v) { plane.distance = v.number(); });
+  }
+  return planes;
+}
+
 void read_render(const Value& value, RenderSettings& render) {
-  value.check_keys(
-      {"size", "step_size", "termination_opacity", "lighting", "surface", "background", "engine"});
+  value.check_keys({"size", "step_size", "termination_opacity", "lighting", "surface",
+                    "clip_planes", "background", "engine"});
   value.with("size", [&](const Value& v) {
     const auto sides = v.array_of(2, "an array of two whole numbers, width and height");
     render.width = static_cast<int>(sides[0].integer(1, max_image_side));
@@ -272,6 +289,7 @@ void read_render(const Value& value, RenderSettings& render) {
   });
   value.with("lighting", [&](const Value& v) { render.lighting = read_lighting(v); });
   value.with("surface", [&](const Value& v) { render.surface = read_surface_settings(v); });
+  value.with("clip_planes", [&](const Value& v) { render.clip_planes = read_clip_planes(v); });
   value.with("background", [&](const Value& v) {
     const Color color = render.background = v.color();
     if (std::max({color.r, color.g, color.b}) > 1) {
