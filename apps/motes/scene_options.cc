@@ -13,6 +13,7 @@
 #include <optional>
 
 #include "core/error.h"
+#include "scene/style.h"
 
 namespace motes {
 namespace {
@@ -219,35 +220,14 @@ SceneChanges::Change read_transfer_function_option(const std::string& text) {
   };
 }
 
-/// What a style draws besides the fields, if anything.
-std::vector<Geometry> geometry_of_style(std::string_view style) {
-  Geometry balls, sticks;
-  sticks.type = Geometry::Type::sticks;
-  sticks.radius = 0.15;
-  if (style == "spheres") return {balls};
-  balls.scale = 0.25;
-  if (style == "ball-and-stick") return {balls, sticks};
-  balls.scale = 0.15;
-  sticks.radius = 0.08;
-  if (style == "volume+balls") return {balls, sticks};
-  return {};
-}
-
 SceneChanges::Change read_style(const std::string& text) {
-  const std::vector<std::string> names{"volume", "spheres", "ball-and-stick", "volume+balls"};
-  if (std::find(names.begin(), names.end(), text) == names.end()) {
-    throw CLI::ValidationError(
-        fmt::format("--style: {}", unknown_name("style", text, names).what()),
-        CLI::ExitCodes::ValidationError);
+  try {
+    geometry_of_style(text);
+  } catch (const Error& error) {
+    throw CLI::ValidationError(fmt::format("--style: {}", error.what()),
+                               CLI::ExitCodes::ValidationError);
   }
-  return [text](Scene& scene) {
-    scene.geometry = geometry_of_style(text);
-    if (text == "spheres" || text == "ball-and-stick") {
-      scene.fields.clear();
-    } else if (scene.fields.empty()) {
-      scene.fields.emplace_back().name = "all";
-    }
-  };
+  return [text](Scene& scene) { apply_style(text, scene); };
 }
 
 SceneChanges::Change read_engine(const std::string& text) {
@@ -404,8 +384,7 @@ void add_picture_options(CLI::App& command, SceneChanges& changes) {
       ->type_name("NX,NY,NZ,D")
       ->allow_extra_args(false);
   add_option(command, changes, "--style", "NAME",
-             "volume, spheres, ball-and-stick or volume+balls, in place of the scene's geometry",
-             read_style);
+             fmt::format("what is drawn: {}", fmt::join(style_names(), ", ")), read_style);
   add_number(
       command, changes, "--ambient-occlusion", "N",
       "rays a pixel for the ambient occlusion of balls and sticks (default: 16)", ray_count,

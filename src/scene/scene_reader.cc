@@ -12,6 +12,7 @@
 #include "scene/checked_json.h"
 #include "scene/geometry_json.h"
 #include "scene/scene.h"
+#include "scene/style.h"
 
 namespace motes {
 namespace {
@@ -316,9 +317,26 @@ void check_support_factors(const Value& fields, const Scene& scene) {
   }
 }
 
+/// After fields and geometry.
+void read_style(const Value& value, Scene& scene) {
+  const std::string name = value.text("the name of a style");
+  if (!scene.geometry.empty()) value.fail("expected either a style or geometry, found both");
+  bool draws_fields = false;
+  try {
+    draws_fields = style_draws_fields(name);
+  } catch (const Error& error) {
+    value.fail(error.what());
+  }
+  if (!scene.fields.empty() && !draws_fields) {
+    value.fail(fmt::format("expected no fields with the style '{}', which draws none", name));
+  }
+  apply_style(name, scene);
+}
+
 Scene read_root(const json& root, const std::filesystem::path& directory) {
   const Value value(root, "");
-  value.check_keys({"version", "data", "camera", "kernel", "fields", "geometry", "render"});
+  value.check_keys(
+      {"version", "data", "camera", "kernel", "fields", "geometry", "style", "render"});
   const Value version = value.at("version");
   if (version.raw() != json(1)) version.expected("1, the only version there is");
   Scene scene;
@@ -335,6 +353,7 @@ Scene read_root(const json& root, const std::filesystem::path& directory) {
     check_support_factors(v, scene);
   });
   value.with("geometry", [&](const Value& v) { scene.geometry = read_geometry(v); });
+  value.with("style", [&](const Value& v) { read_style(v, scene); });
   value.with("render", [&](const Value& v) { read_render(v, scene.render); });
   return scene;
 }
