@@ -219,11 +219,12 @@ Renderer::Renderer(const ParticleSet& particles, const std::vector<FieldSource>&
 void Renderer::build(const ParticleSet& particles, const std::vector<FieldSource>& fields,
                      const GeometrySource& geometry) {
   surface_.reset();
+  field_values_ = {};
   *kernels_ = {};  // its memory is free before the new one needs it
   const auto build_from = [&](const std::vector<FieldSource>& sources) {
     *kernels_ = build_kernel_set(particles, sources, &order_);
     if (geometry.empty()) return;
-    surface_ = make_surface(particles, geometry, sources, order_, *kernels_);
+    surface_ = make_surface(particles, geometry, sources, order_, *kernels_, field_values_);
   };
   const std::optional<FieldSource> drawn_only = find_drawn_only(particles, geometry, fields);
   if (!drawn_only) return build_from(fields);
@@ -280,8 +281,15 @@ void Renderer::render(const ResolvedScene& scene, const RenderOptions& options, 
   if (surface_ && !scene.render.clip_planes.empty()) {
     cut_surface = cut(*surface_, clip_planes_of(scene, *kernels_));
   }
+  std::optional<SurfaceColors> field_colors;
+  if (!field_values_.empty()) {
+    field_colors = color_by_fields(surface_->colors, field_values_, scene.transfer_functions);
+  }
   std::optional<SurfaceFrame> surface;
-  if (surface_) surface = frame_of(cut_surface ? *cut_surface : *surface_, scene);
+  if (surface_) {
+    surface = frame_of(cut_surface ? *cut_surface : *surface_, scene);
+    surface->colors = field_colors ? &*field_colors : &surface_->colors;
+  }
   if (kernels_->fields.empty() || kernels_->size() == 0) {
     std::fill(image.rgba.begin(), image.rgba.end(), 0.0f);
     if (surface) {

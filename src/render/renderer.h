@@ -12,6 +12,7 @@
 #include "field/kernel_set.h"
 #include "image/framebuffer.h"
 #include "particles/particle_set.h"
+#include "render/field_colors.h"
 #include "render/stages.h"
 #include "samples/layers.h"
 #include "scene/scene.h"
@@ -82,7 +83,9 @@ class Renderer {
 
   const KernelSet& kernels() const { return *kernels_; }
   /// Bytes of balls and sticks besides those of kernels().
-  std::size_t surface_bytes() const { return surface_ ? surface_->bytes() : 0; }
+  std::size_t surface_bytes() const {
+    return surface_ ? surface_->bytes() + field_values_.bytes() : 0;
+  }
   /// Time that the last build or refit took.
   double build_ms() const { return build_ms_; }
 
@@ -92,6 +95,7 @@ class Renderer {
 
   std::unique_ptr<KernelSet> kernels_ = std::make_unique<KernelSet>();  ///< stays where it is
   std::optional<Surface> surface_;
+  FieldValues field_values_;
   KernelOrder order_;  ///< empty until particles move
   std::optional<CellGrid> cells_;
   double build_ms_ = 0;

@@ -52,7 +52,6 @@ Surface cut(const Surface& surface, std::span<const ClipPlane> planes) {
   UninitializedVector<std::uint8_t> kept(kernels.size());
   Surface left;
   left.kernels = surface.kernels;
-  left.colors = surface.colors;
   left.radius.allocate(kernels.size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, kept.size(), 1 << 14), [&](const auto& r) {
     for (std::size_t p = r.begin(); p != r.end(); ++p) {

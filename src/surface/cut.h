@@ -8,7 +8,8 @@
 
 namespace motes {
 
-/// What is left of `surface`: the balls and sticks of particles whose centre no plane cuts away.
+/// What is left of `surface`: the balls and sticks of particles whose centre no plane cuts away;
+/// without colours.
 /// `planes` are in internal lengths from the kernels' origin, their normals of unit length.
 Surface cut(const Surface& surface, std::span<const ClipPlane> planes);
 

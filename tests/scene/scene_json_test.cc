@@ -361,7 +361,8 @@ RC_GTEST_PROP(SceneToJson, ReadsBackEqual, ()) {
     balls.radius = *rc::gen::element<decltype(Geometry::radius)>(ElementRadius::covalent, 2.5,
                                                                  std::string("size"));
     balls.color = *rc::gen::element<decltype(Geometry::color)>(
-        ColorBy::species, Color{0.25F, 0, 1}, ColorByProperty{"v", "magma", {{1, 2}}});
+        ColorBy::species, ColorBy::field, Color{0.25F, 0, 1},
+        ColorByProperty{"v", "magma", {{1, 2}}});
     sticks.type = Geometry::Type::sticks;
     sticks.radius = 0.25;
     sticks.bonds = BondSource::distance;
