@@ -92,18 +92,11 @@ nlohmann::ordered_json to_json(const Grid& grid) {
 void print_json(const FileInfo& info) {
   using json = nlohmann::ordered_json;
   const ParticleSet& particles = info.particles;
-  json out{{"format", info.format},
-           {"particles", particles.size()},
-           {"frames", info.num_frames},
-           {"species", json::array()},
-           {"properties", json::array()},
-           {"cell", nullptr},
-           {"cell_origin", nullptr},
-           {"periodic", {false, false, false}},
-           {"bounds", nullptr},
-           {"time", nullptr},
-           {"length_unit", unit_of(info)},
-           {"grids", json::array()}};
+  json out{
+      {"format", info.format},    {"particles", particles.size()},     {"frames", info.num_frames},
+      {"species", json::array()}, {"properties", json::array()},       {"cell", nullptr},
+      {"cell_origin", nullptr},   {"periodic", {false, false, false}}, {"bounds", nullptr},
+      {"time", nullptr},          {"length_unit", unit_of(info)},      {"grids", json::array()}};
   for (const Grid& grid : info.grids) out["grids"].push_back(to_json(grid));
   const auto counts = count_species(particles);
   for (std::size_t s = 0; s < counts.size(); ++s) {

@@ -16,7 +16,8 @@ namespace motes {
 
 namespace {
 
-/// Throws Error, as a fault of the scene at `scene_path`, if the file that `key` names is not there.
+/// Throws Error, as a fault of the scene at `scene_path`, if the file that `key` names is not
+/// there.
 void check_exists(const std::filesystem::path& file, const std::string& key,
                   const std::filesystem::path& scene_path) {
   std::error_code error;

@@ -127,9 +127,9 @@ double GridField::sum(const std::array<double, 3>& x, int derivative) const {
       for (std::size_t i = 0; i < taps; ++i) {
         const double weight = w[0][i] * w[1][j] * w[2][k];
         if (weight == 0) continue;
-        total += weight * coefficient({first[0] + static_cast<int>(i),
-                                       first[1] + static_cast<int>(j),
-                                       first[2] + static_cast<int>(k)});
+        total +=
+            weight * coefficient({first[0] + static_cast<int>(i), first[1] + static_cast<int>(j),
+                                  first[2] + static_cast<int>(k)});
       }
     }
   }

@@ -24,8 +24,8 @@ constexpr double faintest_normal = 1e-20;
 struct Volume {
   std::vector<std::vector<ParticleKernel>> fields;
   std::vector<std::optional<GridField>> grids;  ///< one a field, where it is one
-  std::vector<double> smallest_radius;  ///< of each field's particles
-  std::vector<double> largest_peak;     ///< of each field's kernels
+  std::vector<double> smallest_radius;          ///< of each field's particles
+  std::vector<double> largest_peak;             ///< of each field's kernels
   Bounds3d box;
   Vector3d forward;
   double near = 0,

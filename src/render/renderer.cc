@@ -107,8 +107,8 @@ FrameContext make_context(const KernelSet& kernels, const GridFields& grids,
         scene.transfer_functions[f], kernels.fields[f].value_scale, scene.step_size));
     context.absolute = context.absolute || kernels.fields[f].mixed_signs;
   }
-  context.grids = make_frame_grids(grids, kernels, context.view, scene.transfer_functions,
-                                   context.classifiers);
+  context.grids =
+      make_frame_grids(grids, kernels, context.view, scene.transfer_functions, context.classifiers);
   context.any_kernels = grids.size() < kernels.fields.size();
   context.shading = make_shading(scene, axes, kernels);
   context.shading.has_gaps = !grids.empty();
@@ -230,8 +230,8 @@ TreeUpdate Renderer::set_particles(const ParticleSet& particles,
   const Stopwatch stopwatch;
   cells_.reset();
   TreeUpdate update = TreeUpdate::refitted;
-  const bool any_grids = std::any_of(fields.begin(), fields.end(),
-                                     [](const FieldSource& field) { return field.grid != nullptr; });
+  const bool any_grids = std::any_of(
+      fields.begin(), fields.end(), [](const FieldSource& field) { return field.grid != nullptr; });
   if (!geometry.empty() || surface_ || any_grids || !grids_.empty() ||
       !refit_kernel_set(particles, fields, order_, *kernels_)) {
     update = TreeUpdate::rebuilt;

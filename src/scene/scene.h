@@ -133,7 +133,7 @@ struct LoadedGrid {
 /// them. Or the field's grid, and no particles.
 struct FieldSource {
   std::string name;
-  std::shared_ptr<const Grid> grid;  ///< null: a field of particles
+  std::shared_ptr<const Grid> grid;                          ///< null: a field of particles
   Reconstruction interpolation = Reconstruction::trilinear;  ///< of the grid
   Kernel kernel;
   bool normalise = false;

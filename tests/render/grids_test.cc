@@ -42,8 +42,8 @@ FieldSource cube_grid(std::size_t n, double size, const std::function<double(con
   grid.steps = {Vector3d{step, 0, 0}, {0, step, 0}, {0, 0, step}};
   grid.values.resize(grid.size());
   for (std::size_t i = 0; i < grid.size(); ++i) {
-    grid.values[i] = static_cast<float>(
-        f(grid.position(double(i % n), double(i / n % n), double(i / n / n))));
+    grid.values[i] =
+        static_cast<float>(f(grid.position(double(i % n), double(i / n % n), double(i / n / n))));
   }
   FieldSource source;
   source.name = "grid";

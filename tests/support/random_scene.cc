@@ -327,8 +327,7 @@ RandomScene random_grid_scene(std::uint32_t seed) {
     scene.fields.insert(scene.fields.begin() + at, std::move(source));
   }
   scene.step_size = std::max(scene.step_size, extent / 40);
-  result.description +=
-      fmt::format(", {} grids, {} fields in all", num_grids, scene.fields.size());
+  result.description += fmt::format(", {} grids, {} fields in all", num_grids, scene.fields.size());
   return result;
 }
 
