@@ -216,6 +216,24 @@ class Way {
   std::size_t next_ = 0;
 };
 
+struct Depths {
+  double near, far;
+};
+
+/// Between which depths no plane cuts the ray away.
+Depths kept_by(const std::vector<ClipPlane>& planes, const CameraRay& ray) {
+  Depths kept{0, std::numeric_limits<double>::infinity()};
+  for (const ClipPlane& plane : planes) {
+    const Vector3d normal = normalize(plane.normal);
+    const double height = dot(normal, ray.origin - Point3d{}) - plane.distance;
+    const double rise = dot(normal, ray.direction);
+    if (rise > 0) kept.far = std::min(kept.far, -height / rise);
+    if (rise < 0) kept.near = std::max(kept.near, -height / rise);
+    if (rise == 0 && height > 0) kept.far = -1;
+  }
+  return kept;
+}
+
 Pixel render_pixel(const Volume& volume, const ResolvedScene& scene,
                    const std::vector<Layer>& layers, int px, int py) {
   const Point3d eye = scene.camera.eye;
@@ -227,6 +245,7 @@ Pixel render_pixel(const Volume& volume, const ResolvedScene& scene,
     fields.push_back(kernels_near_ray(kernels, ray, eye));
   }
 
+  const Depths kept = kept_by(scene.render.clip_planes, ray);
   Pixel pixel;
   Way way(layers, scene.render.termination_opacity, pixel);
   // From the last plane before the box, or the first of all, to the first one behind the box.
@@ -237,11 +256,14 @@ Pixel render_pixel(const Volume& volume, const ResolvedScene& scene,
     const double tolerance = stability_tolerance * length(x - eye);
     if (distance_to_faces(volume.box, x) <= tolerance) pixel.unstable = true;
     if (!volume.box.contains(x)) continue;
+    const double begin = std::max(k * step_size, kept.near);
+    const double end = std::min((k + 1) * step_size, kept.far);
+    if (begin >= end) continue;
     way.meet_layers(k * step_size);
     if (way.ended()) break;
     ++pixel.samples;
     const auto samples = classify_sample(volume, scene, fields, x, view, pixel);
-    way.pass(samples, k * step_size, (k + 1) * step_size, length(ray.direction));
+    way.pass(samples, begin, end, length(ray.direction));
   }
   way.meet_layers(std::numeric_limits<double>::infinity());
   return pixel;

@@ -86,6 +86,13 @@ TEST_F(Grids, AtomsOfTheFileAreInThePicture) {
   EXPECT_EQ(largest_opacity("d.npy"), 1);
 }
 
+TEST_F(Grids, AreWhatAStyleShowsOfTheirFile) {
+  workspace_.write("s.json", R"({"version": 1, "data": {"path": "h2.cube"}, "style": "volume"})");
+  succeed("render s.json -o a.npy --size 24x24");
+  succeed("render h2.cube -o b.npy --size 24x24 --style volume");
+  EXPECT_EQ(pixels("a.npy"), pixels("b.npy"));
+}
+
 TEST_F(Grids, ShareAPictureWithParticles) {
   workspace_.write("s.json", R"({"version": 1, "data": {"path": "a.xyz"}, "fields": [
       {"name": "atoms", "radius": 1}, {"grid": "heat.nrrd", "transfer_function": "magma"}]})");
@@ -175,8 +182,9 @@ TEST_F(Grids, DamagedFilesAreTold) {
   workspace_.write("huge.nrrd",
                    "NRRD0004\ntype: float\ndimension: 3\nsizes: 100000 100000 100000\n"
                    "encoding: raw\n\nabcd");
-  workspace_.write("thin.nrrd",
-                   "NRRD0004\ntype: float\ndimension: 3\nsizes: 2 1 2\nencoding: ascii\n\n1 2 3 4\n");
+  workspace_.write(
+      "thin.nrrd",
+      "NRRD0004\ntype: float\ndimension: 3\nsizes: 2 1 2\nencoding: ascii\n\n1 2 3 4\n");
   EXPECT_THAT(failure("render short.cube -o a.png", 1), HasSubstr("short.cube"));
   EXPECT_THAT(failure("render huge.nrrd -o a.png", 1), HasSubstr("huge.nrrd"));
   EXPECT_THAT(failure("render thin.nrrd -o a.png", 1),

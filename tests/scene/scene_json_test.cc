@@ -140,6 +140,20 @@ TEST(ParseScene, NamesTheNearestKey) {
             "expression; the nearest known key is 'index'");
 }
 
+TEST(ParseScene, StylesAreGeometry) {
+  const auto parse_style = [](const std::string& rest) {
+    return parse(with_body("\"style\": " + rest));
+  };
+  EXPECT_TRUE(parse_style(R"("spheres")").fields.empty());
+  ASSERT_EQ(parse_style(R"("spheres")").geometry.size(), 1u);
+  const Scene both = parse_style(R"("volume+balls", "fields": [{"name": "a"}])");
+  ASSERT_EQ(both.fields.size(), 1u);
+  EXPECT_EQ(both.fields[0].name, "a");
+  ASSERT_EQ(both.geometry.size(), 2u);
+  EXPECT_EQ(both.geometry[1].type, Geometry::Type::sticks);
+  EXPECT_EQ(parse_style(R"("volume")").fields.size(), 1u);
+}
+
 TEST(ParseScene, NamesTheLineOfBrokenJson) {
   EXPECT_THAT(message_of("{\"version\": 1,\n\n \"data\": }"),
               HasSubstr("dir/s.json:3: expected JSON: "));
@@ -263,6 +277,15 @@ INSTANTIATE_TEST_SUITE_P(
                 "render.lighting.direction: a direction must not be zero"},
         Refusal{R"("render": {"lighting": false})",
                 "render.lighting: expected an object such as {\"enabled\": false}, found false"},
+        Refusal{R"("render": {"clip_planes": {}})", "render.clip_planes: expected an array of pl"},
+        Refusal{R"("render": {"clip_planes": [{"distance": 1}]})",
+                "render.clip_planes[0]: expected the key 'normal'"},
+        Refusal{R"("render": {"clip_planes": [{"normal": [0, 0, 0]}]})",
+                "render.clip_planes[0].normal: a direction must not be zero"},
+        Refusal{R"("style": "sphere")", "style: unknown style 'sphere'; did you mean 'spheres'?"},
+        Refusal{R"("style": "spheres", "fields": [{}])", "style: expected no fields with the st"},
+        Refusal{R"("style": "volume", "geometry": [{"type": "spheres"}])",
+                "style: expected either a style or geometry, found both"},
         Refusal{R"("render": {"background": "blakc"})", "render.background: expected a colour"},
         Refusal{R"("render": {"background": [0.5, 128, 0]})",
                 "render.background: expected \"black\", \"white\", \"#rrggbb\" (sRGB) or [r, g, b] "
@@ -385,6 +408,9 @@ RC_GTEST_PROP(SceneToJson, ReadsBackEqual, ()) {
     sticks.bonds = BondSource::distance;
     scene.geometry = {balls, sticks};
     scene.render.surface = {2, 64, 3.5, false, 0};
+  }
+  for (int n = *rc::gen::inRange(0, 3); n > 0; --n) {
+    scene.render.clip_planes.push_back({{0, -1, 0.25 * n}, random_double(-30, 30)});
   }
   scene.kernel = {random_double(1, 30), random_double(-30, 30)};
   if (*rc::gen::arbitrary<bool>()) {

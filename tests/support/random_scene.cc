@@ -216,6 +216,20 @@ Lighting draw_lighting(Draw& draw) {
   return lighting;
 }
 
+/// Through the middle of the data or near it; some across others, so that little or nothing is
+/// left.
+std::vector<ClipPlane> draw_clip_planes(Draw& draw, const Extent& extent) {
+  std::vector<ClipPlane> planes;
+  if (draw.chance(0.7)) return planes;
+  for (int i = draw.below(3); i >= 0; --i) {
+    const Vector3d normal = draw.direction();
+    const double distance =
+        dot(normal, extent.center - Point3d{}) + draw.uniform(-0.5, 1) * extent.size;
+    planes.push_back({draw.uniform(0.5, 2) * normal, distance});
+  }
+  return planes;
+}
+
 }  // namespace
 
 RandomScene random_scene(std::uint32_t seed) {
@@ -250,12 +264,14 @@ RandomScene random_scene(std::uint32_t seed) {
   const double terminations[] = {0.97, 0.97, 0.5, 0.9, 1};
   scene.render.termination_opacity = terminations[draw.below(5)];
   scene.render.lighting = draw_lighting(draw);
+  scene.render.clip_planes = draw_clip_planes(draw, extent);
   result.description = fmt::format(
       "seed {}: {} particles in {} fields, extent {:.3g} around ({:.3g}, {:.3g}, {:.3g}), view {}, "
-      "{}x{}, step {:.3g}, termination {}, {}",
+      "{}x{}, step {:.3g}, termination {}, {}, {} clip planes",
       seed, num_particles, num_fields, extent.size, extent.center.x, extent.center.y,
       extent.center.z, view, scene.render.width, scene.render.height, scene.step_size,
-      scene.render.termination_opacity, scene.render.lighting.enabled ? "lit" : "unlit");
+      scene.render.termination_opacity, scene.render.lighting.enabled ? "lit" : "unlit",
+      scene.render.clip_planes.size());
   return result;
 }
 
