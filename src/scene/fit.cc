@@ -26,11 +26,7 @@ constexpr double target_over_black = 0.7, target_over_white = 0.9;  // white ble
 constexpr double log_steepness = 1.5;
 constexpr double light_of_peaks = 0.6;
 constexpr double least_opacity = 0.3 / 0.7;  // of the opacity aimed at
-// It rises with this power too for values of both signs of which half are smaller than a tenth of
-// the largest: orbitals, whose tails would fill the picture.
-constexpr double signed_steepness = 2;
-constexpr double signed_tails = 0.1;
-constexpr int curve_points = 9;    // of one colour
+constexpr int log_points = 9;                // of one colour
 constexpr float paleness = 0.35f;  // of a species' colour at the largest values: shape shows
 constexpr const char* default_map = "viridis";
 
@@ -78,7 +74,6 @@ Range fit_range(const RayProfiles& profiles, std::optional<bool> log_scale) {
     range.both_signs = true;
     range.high = quantile(absolute, 0.999);
     range.low = -range.high;
-    if (quantile(absolute, 0.5) < signed_tails * range.high) range.steepness = signed_steepness;
     return range;
   }
   const double largest = quantile(positive, 0.999);
@@ -179,11 +174,10 @@ TransferFunction one_color(const Color& color, const Range& range, double extinc
   TransferFunction function;
   function.log_scale = range.log_scale;
   if (range.both_signs) {
-    const int last = range.steepness == 1 ? 1 : curve_points - 1;
-    for (int k = -last; k <= last; ++k) function.points.push_back(point(k * range.high / last));
+    for (const double value : {range.low, 0.0, range.high}) function.points.push_back(point(value));
     return function;
   }
-  const int last = range.steepness == 1 ? 1 : curve_points - 1;
+  const int last = range.steepness == 1 ? 1 : log_points - 1;
   for (int k = 0; k <= last; ++k) {
     function.points.push_back(point(range.value_at(static_cast<double>(k) / last)));
   }
@@ -261,8 +255,7 @@ TransferFunction fit_transfer_function(const decltype(Field::transfer_function)&
   } else {
     range = fit_range(profiles, named.log_scale);
   }
-  if (range.log_scale) range.steepness = log_steepness;
-  if (named.extinction) range.steepness = 1;
+  if (range.log_scale && !named.extinction) range.steepness = log_steepness;
   const double extinction =
       named.extinction ? *named.extinction : fit_extinction(profiles, range, opacity);
 

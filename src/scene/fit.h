@@ -57,8 +57,7 @@ double fit_opacity(const std::vector<RayProfiles>& profiles, const Color& backgr
 /// - the extinction rises over the range so that rays through matter get `opacity` on average:
 ///   linearly, or on a logarithmic scale with the power 1.5 of the place in it, and then less where
 ///   more than 40 % of the light of the rays' largest values would be lost in front of them, but
-///   not below 3/7 of `opacity`; for values of both signs with long tails with the power 2. A given
-///   extinction always rises linearly.
+///   not below 3/7 of `opacity`. A given extinction always rises linearly.
 /// `species_color` is the colour of species_colors, paler towards the end of the range. Throws
 /// Error for a range that cannot be.
 TransferFunction fit_transfer_function(const decltype(Field::transfer_function)& wish,
