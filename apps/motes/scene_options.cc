@@ -137,8 +137,17 @@ void add_number_or_property(CLI::App& command, SceneChanges& changes, const std:
                }
                const NumberOrProperty value =
                    number ? NumberOrProperty(*number) : NumberOrProperty(text);
-               return [member, value](Scene& scene) {
-                 for_each_field(scene, [&](Field& field) { field.*member = value; });
+               return [name, member, value](Scene& scene) {
+                 bool any = false;
+                 for_each_field(scene, [&](Field& field) {
+                   if (field.grid) return;
+                   field.*member = value;
+                   any = true;
+                 });
+                 if (!any) {
+                   throw Error(fmt::format(
+                       "{}: is for fields of particles, and all of the scene's are grids", name));
+                 }
                };
              });
 }
@@ -228,6 +237,23 @@ SceneChanges::Change read_style(const std::string& text) {
                                CLI::ExitCodes::ValidationError);
   }
   return [text](Scene& scene) { apply_style(text, scene); };
+}
+
+SceneChanges::Change read_interpolation(const std::string& text) {
+  try {
+    return [interpolation = interpolation_from_name(text)](Scene& scene) {
+      bool any = false;
+      for (Field& field : scene.fields) {
+        if (!field.grid) continue;
+        field.grid->interpolation = interpolation;
+        any = true;
+      }
+      if (!any) throw Error("--interpolation: is for grids, and none of the fields is one");
+    };
+  } catch (const Error& error) {
+    throw CLI::ValidationError(fmt::format("--interpolation: {}", error.what()),
+                               CLI::ExitCodes::ValidationError);
+  }
 }
 
 SceneChanges::Change read_engine(const std::string& text) {
@@ -337,6 +363,10 @@ void add_field_options(CLI::App& command, SceneChanges& changes) {
              "gaussian, cubic_spline, quintic_spline, wendland_c2, wendland_c4, wendland_c6,\n"
              "or a file of two columns, distance and value (default: gaussian)",
              read_kernel);
+  add_option(command, changes, "--interpolation", "NAME",
+             "how grids are reconstructed: trilinear, tricubic (B-spline through the samples) or\n"
+             "tricubic_smoothing (default: trilinear)",
+             read_interpolation);
   add_number(command, changes, "--support-factor", "S",
              "the Gaussians end at S standard deviations (default: 2)", positive,
              [](Scene& scene, double v) {

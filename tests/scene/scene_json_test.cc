@@ -107,6 +107,27 @@ TEST(ParseScene, NeedsVersionAndPathAlone) {
             "dir/s.json: data: expected the key 'path'");
 }
 
+TEST(ParseScene, ReadsGrids) {
+  const Scene scene = parse(R"({"version": 1, "fields": [
+      {"grid": "../a.cube"},
+      {"name": "b", "grid": {"path": "b.nrrd", "array": "heat", "interpolation": "tricubic"}}]})");
+  Scene expected;
+  expected.fields.resize(2);
+  expected.fields[0].grid = {"a.cube", "", Reconstruction::trilinear};
+  expected.fields[1].name = "b";
+  expected.fields[1].grid = {"dir/b.nrrd", "heat", Reconstruction::tricubic};
+  EXPECT_EQ(scene, expected);
+  EXPECT_EQ(parse(with_body(R"("fields": [{"grid": {}}])")).fields[0].grid, FieldGrid{});
+}
+
+TEST(ParseScene, NeedsDataForAllButGridsOfTheirOwn) {
+  for (const std::string rest :
+       {R"("fields": [{"grid": {"array": "a"}}])", R"("fields": [{"grid": "a"}, {}])",
+        R"("fields": [{"grid": "a"}], "geometry": [{"type": "spheres"}])", R"("fields": [])"}) {
+    EXPECT_EQ(message_of(R"({"version": 1, )" + rest + "}"), "dir/s.json: expected the key 'data'");
+  }
+}
+
 TEST(ParseScene, NamesTheNearestKey) {
   EXPECT_EQ(message_of(with_body(R"("camra": {})")),
             "dir/s.json: unknown key 'camra'; did you mean 'camera'?");
@@ -168,6 +189,18 @@ TEST_P(Refuses, WithOneClearLine) {
 INSTANTIATE_TEST_SUITE_P(
     ParseScene, Refuses,
     testing::Values(
+        Refusal{R"("fields": [{"grid": 1}])", "fields[0].grid: expected the path of a grid"},
+        Refusal{R"("fields": [{"grid": {"file": "a"}}])", "fields[0].grid: unknown key 'file'"},
+        Refusal{R"("fields": [{"grid": {"interpolation": "linear"}}])",
+                "fields[0].grid.interpolation: unknown interpolation 'linear'; did you mean "
+                "'trilinear'?"},
+        Refusal{R"("fields": [{}, {"grid": "a", "select": {}}])",
+                "fields[1].select: is for fields "
+                "of particles; expected none"},
+        Refusal{R"("fields": [{"grid": "a", "radius": 1}])", "fields[0].radius: is for fields of"},
+        Refusal{R"("fields": [{"grid": "a", "weight": 1}])", "fields[0].weight: is for fields of"},
+        Refusal{R"("fields": [{"grid": "a", "normalise": true}])", "fields[0].normalise: is for"},
+        Refusal{R"("fields": [{"grid": "a", "kernel": {}}])", "fields[0].kernel: is for fields of"},
         Refusal{R"("camera": {"eye": [0, 1]})",
                 "camera.eye: expected an array of three numbers, found an array of 2"},
         Refusal{R"("camera": {"eye": [0, 1, "2"]})",
@@ -324,6 +357,15 @@ decltype(Field::transfer_function) random_transfer_function() {
 Field random_field(int number) {
   Field field;
   if (*rc::gen::arbitrary<bool>()) field.name = fmt::format("{}{}", random_text(), number);
+  field.transfer_function = random_transfer_function();
+  if (*rc::gen::inRange(0, 4) == 0) {
+    field.grid.emplace();
+    if (*rc::gen::arbitrary<bool>()) field.grid->path = "/data/runs/b c.nrrd";
+    if (*rc::gen::arbitrary<bool>()) field.grid->array = random_text();
+    field.grid->interpolation = *rc::gen::element(
+        Reconstruction::trilinear, Reconstruction::tricubic, Reconstruction::tricubic_smoothing);
+    return field;
+  }
   if (*rc::gen::arbitrary<bool>()) field.select.species = {random_text(), random_text()};
   field.select.index = maybe([] {
     const auto first = *rc::gen::arbitrary<std::uint32_t>();
@@ -337,7 +379,6 @@ Field random_field(int number) {
   field.kernel_scale = maybe([] { return random_double(-30, 30); });
   field.kernel_shape = maybe([] { return KernelShape{KernelType::quintic_spline, {}}; });
   if (field.kernel_shape) field.support_factor.reset();
-  field.transfer_function = random_transfer_function();
   return field;
 }
 
