@@ -135,6 +135,8 @@ HWY_NOINLINE void add_kernels(const Shape& shape, const KernelSet& kernels,
     fill_shares<Shape>(d, kernel.x, (last_column - first_column + 1) * side, columns);
     fill_shares<Shape>(d, kernel.y, (last_row - first_row + 1) * side, rows);
     fill_shares<Shape>(d, kernel.z, kernel.z.last - kernel.z.first + 1, planes);
+    // (All of the box: of its corners which a kernel leaves out is what no branch predictor can
+    // guess, and that takes longer than to add them.)
     for (int row = first_row; row <= last_row; ++row) {
       for (int column = first_column; column <= last_column; ++column) {
         add_to_group(d, local, columns + (column - first_column) * side,
