@@ -78,6 +78,21 @@ TEST_F(Bench, Table1NamesSizesAndBuildTimes) {
   EXPECT_THAT(workspace_.read("out/bench/table1.svg"), StartsWith("<svg "));
 }
 
+TEST_F(Bench, KernelsAreSampledAtTheSamePlaces) {
+  measure("kernels --scenes zeolite");
+  const auto table = result("kernels");
+  ASSERT_EQ(table["rows"].size(), 16U);
+  for (std::size_t i = 0; i < 16; ++i) {
+    const auto& row = table["rows"][i];
+    const auto& gaussian = table["rows"][i < 8 ? 0 : 8];
+    EXPECT_EQ(gaussian["kernel"], "gaussian");
+    EXPECT_EQ(row["lit"]["samples"], gaussian["unlit"]["samples"]);
+    EXPECT_EQ(row["lit_over_gaussian"],
+              row["lit"]["frame_ms"].get<double>() / gaussian["lit"]["frame_ms"].get<double>());
+  }
+  EXPECT_THAT(workspace_.read("out/bench/kernels.svg"), StartsWith("<svg "));
+}
+
 TEST_F(Bench, Table2ComparesEnginesInBothViews) {
   const Outcome outcome = measure("table2 --scenes nanobowl,zeolite");
   EXPECT_EQ(outcome.err, "");
