@@ -32,6 +32,7 @@ void run_kernels(const BenchJob& job);
 void run_limit(const BenchJob& job);
 void run_lattice(const BenchJob& job);  ///< makes its own particles, as radii does
 void run_radii(const BenchJob& job);
+void run_quality(const BenchJob& job);  ///< of a part of sio2
 void run_threads(const BenchJob& job);
 void run_spheres(const BenchJob& job);
 void run_fig6(const BenchJob& job);
