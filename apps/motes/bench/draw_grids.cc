@@ -144,10 +144,14 @@ void sample_slab(const GridFrame& frame, const IndexRays& index, const RayState&
     };
     const GridPoints points{place(0), place(1), place(2)};
     for (std::size_t f = 0; f < frame.views.size(); ++f) {
-      const GridSamples s = sample_grid<kCubic, kGradient>(d, frame.views[f], points);
+      const Lanes value = sample_grid<kCubic, false>(d, frame.views[f], points).value;
+      const Lanes value_inside = hn::IfThenElseZero(inside, value);
       float* const out = buffer.at(i, static_cast<int>(f));
-      hn::Store(hn::IfThenElseZero(inside, s.value), d, out);
+      hn::Store(value_inside, d, out);
+      // Gradients take longer, and only what is seen is lit.
       if constexpr (kGradient) {
+        if (!may_be_seen(d, value_inside, frame.classifiers[f].visibility)) continue;
+        const GridSamples s = sample_grid<kCubic, true>(d, frame.views[f], points);
         for (std::size_t a = 0; a < 3; ++a) {
           const auto& row = frame.to_camera[a];
           const Lanes sum =

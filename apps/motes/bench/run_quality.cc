@@ -87,15 +87,15 @@ class Comparison {
       row.max = difference.max;
       row.signal_to_noise = peak_signal_to_noise(shown_truth_, shown);
     }
-    row.picture =
-        write(row.name + (row.voxel_size ? fmt::format("_{:g}", *row.voxel_size) : ""), image);
+    const std::string voxels = row.voxel_size ? fmt::format("_{:g}", *row.voxel_size) : "";
+    row.picture = write(row.name + voxels + ".png", image);
     print(row);
     rows.push_back(std::move(row));
   }
 
-  /// Writes a picture; returns its path.
+  /// Writes a picture of that name; returns its path.
   std::string write(const std::string& name, const Framebuffer& image) const {
-    const auto path = job_.workplace.result(fmt::format("quality_{}.png", name));
+    const auto path = job_.workplace.result("quality_" + name);
     write_image(path, image, scene_.render.termination_opacity, scene_.render.background);
     return path.string();
   }
@@ -192,8 +192,10 @@ void run_quality(const BenchJob& job) {
     // As in the paper's figure: the field, trilinear and tricubic from one voxel an angstrom.
     if (voxel_size == 1) figure.insert(figure.end(), images.begin(), images.begin() + 2);
   }
-  fmt::print("\nside by side, the field and of voxels of 1 trilinear and tricubic: {}\n",
-             comparison.write("figure1", beside(figure)));
+  const Framebuffer side_by_side = beside(figure);
+  fmt::print("\nside by side, the field and of voxels of 1 trilinear and tricubic: {}, {}\n",
+             comparison.write("figure1.png", side_by_side),
+             comparison.write("figure1.jpg", side_by_side));
   nlohmann::ordered_json rows = nlohmann::json::array();
   for (const Row& row : comparison.rows) rows.push_back(to_json(row));
   write_results(job, "quality", rows,
