@@ -59,13 +59,13 @@ std::string in_file_name(std::string name) {
   return name;
 }
 
-/// Where each field of `names` goes if the option was `output`, of NRRD.
+/// Where each of the fields goes if the option was `output`, of NRRD.
 std::vector<std::filesystem::path> nrrd_paths(const std::filesystem::path& output,
-                                              const std::vector<FieldSource>& fields) {
+                                              const std::vector<FieldKernels>& fields) {
   if (fields.size() == 1) return {output};
   std::vector<std::filesystem::path> paths;
   std::set<std::string> names;
-  for (const FieldSource& field : fields) {
+  for (const FieldKernels& field : fields) {
     const std::string name = in_file_name(field.name);
     if (!names.insert(name).second) {
       throw Error(output, fmt::format("two fields would be the file of '{}'; expected fields of "
@@ -79,40 +79,39 @@ std::vector<std::filesystem::path> nrrd_paths(const std::filesystem::path& outpu
   return paths;
 }
 
-Lattice choose_lattice(const Options& options, const Bounds3d& box,
-                       const std::vector<FieldSource>& fields) {
-  if (options.voxels && (*options.voxels)[1] != 0) return lattice_of_counts(box, *options.voxels);
-  double size = options.voxel_size.value_or(0);
-  if (options.voxels) {
-    const Vector3d extent = box.diagonal();
-    const double longest = std::max({extent.x, extent.y, extent.z});
-    size = longest / static_cast<double>((*options.voxels)[0] - 1);
-  } else if (!options.voxel_size) {
-    // (three digits: nobody wants to see a float's)
-    size = std::stod(fmt::format("{:.3g}", default_step_size(fields, box)));
-  }
-  return lattice_of_size(box, size);
-}
-
-/// The kernels of the scene's fields; the particles are gone when this returns.
+/// The kernels of the scene's fields; what they were made of is gone.
 struct Prepared {
-  std::vector<FieldSource> fields;
   KernelSet kernels;
   std::string length_unit;
+  double voxel_size;  ///< by default
 };
 
 Prepared prepare(const Scene& scene, const Options& options, Console& console) {
   const Input input = read_particles(scene, console);
   return with_place(options.path, options.changes, [&]() -> Prepared {
-    auto fields = make_field_sources(input.particles, expand_fields(scene, input.particles),
-                                     scene.kernel, console.warnings(), &console);
+    const auto fields = make_field_sources(input.particles, expand_fields(scene, input.particles),
+                                           scene.kernel, console.warnings(), &console);
     console.print_warnings();
     if (fields.empty()) throw Error("has no field; expected one to resample");
     console.update("building the tree", 0);
     KernelSet kernels = build_kernel_set(input.particles, fields);
     console.finish();
-    return {std::move(fields), std::move(kernels), input.particles.length_unit};
+    // (three digits: nobody wants to see a float's)
+    const double size = std::stod(fmt::format("{:.3g}", default_step_size(fields, kernels.box())));
+    return {std::move(kernels), input.particles.length_unit, size};
   });
+}
+
+Lattice choose_lattice(const Options& options, const Prepared& prepared) {
+  const Bounds3d box = prepared.kernels.box();
+  if (!options.voxels) {
+    return lattice_of_size(box, options.voxel_size.value_or(prepared.voxel_size));
+  }
+  const auto& counts = *options.voxels;
+  if (counts[1] != 0) return lattice_of_counts(box, counts);
+  const Vector3d extent = box.diagonal();
+  const double longest = std::max({extent.x, extent.y, extent.z});
+  return lattice_of_size(box, longest / static_cast<double>(counts[0] - 1));
 }
 
 void run(const Options& options) {
@@ -134,14 +133,18 @@ void run(const Options& options) {
   options.changes.apply(scene);
   const Prepared prepared = prepare(scene, options, console);
   const auto paths = is_vti(options.output) ? std::vector<std::filesystem::path>{options.output}
-                                            : nrrd_paths(options.output, prepared.fields);
+                                            : nrrd_paths(options.output, prepared.kernels.fields);
   std::vector<std::unique_ptr<AtomicFile>> files;
   first.reset();
-  for (const auto& path : paths) files.push_back(std::make_unique<AtomicFile>(path));
+  for (const auto& path : paths) {
+    refuse_same_file({{"--output", path}}, {"data.path", scene.data_path});
+    files.push_back(std::make_unique<AtomicFile>(path));
+  }
 
   std::vector<Grid> grids = with_place(options.path, options.changes, [&] {
-    const Lattice lattice = choose_lattice(options, prepared.kernels.box(), prepared.fields);
-    expect_to_fit(lattice, prepared.fields.size(), options.memory.value_or(available_memory()));
+    const Lattice lattice = choose_lattice(options, prepared);
+    expect_to_fit(lattice, prepared.kernels.fields.size(),
+                  options.memory.value_or(available_memory()));
     return resample(prepared.kernels, lattice, &console);
   });
   console.update("writing", 0);

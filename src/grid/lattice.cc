@@ -59,7 +59,7 @@ Lattice lattice_of_size(const Bounds3d& box, double voxel_size) {
     const double steps = std::max(1., std::ceil(extent / voxel_size * (1 - 1e-12)));
     if (steps >= most_along_axis) {
       throw Error(
-          fmt::format("voxel size {}: {:.0f} samples along an axis, expected at most {:.0f}",
+          fmt::format("voxel size {}: {:.3g} samples along an axis, expected at most {:.0f}",
                       voxel_size, steps + 1, most_along_axis));
     }
     lattice.dims[static_cast<std::size_t>(a)] = static_cast<std::size_t>(steps) + 1;
