@@ -27,7 +27,7 @@ namespace {
 
 /// Everything that a frame's rays share.
 struct GridFrame {
-  const GridFields* fields;
+  const DrawnGrids* fields;
   std::vector<GridView> views;
   Point3d eye;
   CameraAxes axes;
@@ -240,7 +240,7 @@ ShadingConstants make_shading(const ResolvedScene& scene, const GridFrame& frame
   return shading;
 }
 
-GridFrame make_frame(const GridFields& fields, const ResolvedScene& scene) {
+GridFrame make_frame(const DrawnGrids& fields, const ResolvedScene& scene) {
   GridFrame frame;
   frame.fields = &fields;
   for (const GridSampler& sampler : fields.samplers()) frame.views.push_back(sampler.view());
@@ -268,7 +268,7 @@ GridFrame make_frame(const GridFields& fields, const ResolvedScene& scene) {
 
 }  // namespace
 
-GridFields::GridFields(const std::vector<Grid>& grids, Reconstruction reconstruction,
+DrawnGrids::DrawnGrids(const std::vector<Grid>& grids, Reconstruction reconstruction,
                        const Bounds3d& box)
     : box_(box) {
   assert(!grids.empty());
@@ -276,13 +276,13 @@ GridFields::GridFields(const std::vector<Grid>& grids, Reconstruction reconstruc
   for (const GridSampler& sampler : samplers_) macro_cells_.emplace_back(sampler);
 }
 
-std::size_t GridFields::num_bytes() const {
+std::size_t DrawnGrids::num_bytes() const {
   std::size_t bytes = 0;
   for (const GridSampler& sampler : samplers_) bytes += sampler.num_bytes();
   return bytes;
 }
 
-void draw_grids(const GridFields& fields, const ResolvedScene& scene, Framebuffer& image) {
+void draw_grids(const DrawnGrids& fields, const ResolvedScene& scene, Framebuffer& image) {
   assert(scene.transfer_functions.size() == fields.samplers().size());
   const GridFrame frame = make_frame(fields, scene);
   image = Framebuffer(scene.render.width, scene.render.height);

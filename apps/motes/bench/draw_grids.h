@@ -13,10 +13,10 @@
 namespace motes {
 
 /// Fields on one lattice, ready to be sampled.
-class GridFields {
+class DrawnGrids {
  public:
   /// Grids of one lattice, and the box outside which nothing is sampled, within their hull.
-  GridFields(const std::vector<Grid>& grids, Reconstruction reconstruction, const Bounds3d& box);
+  DrawnGrids(const std::vector<Grid>& grids, Reconstruction reconstruction, const Bounds3d& box);
 
   const std::vector<GridSampler>& samplers() const { return samplers_; }
   const std::vector<MacroCells>& macro_cells() const { return macro_cells_; }
@@ -33,6 +33,6 @@ class GridFields {
 /// Renders the fields with a scene's transfer functions, one a field, its camera, lighting, step
 /// and termination: the same samples as of its particles, by pass 2 of the engines. Where a block
 /// of rays passes through macro cells in which nothing is seen, nothing is sampled. On all threads.
-void draw_grids(const GridFields& fields, const ResolvedScene& scene, Framebuffer& image);
+void draw_grids(const DrawnGrids& fields, const ResolvedScene& scene, Framebuffer& image);
 
 }  // namespace motes

@@ -150,7 +150,7 @@ std::vector<Framebuffer> add_grids(const BenchJob& job, const PreparedScene& pre
   std::vector<Framebuffer> images;
   for (const Way& way : ways) {
     const Stopwatch build;
-    const GridFields fields(grids, way.reconstruction, box);
+    const DrawnGrids fields(grids, way.reconstruction, box);
     Row row{std::string(way.name), voxel_size, fields.num_bytes(), resample_ms,
             build.milliseconds()};
     Framebuffer& image = images.emplace_back();

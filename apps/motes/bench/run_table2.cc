@@ -57,12 +57,12 @@ constexpr double patience_ms = 2000;
 
 /// Grids of the scene's fields, of voxels of 1, as the paper has them; nothing where there is not
 /// memory enough for them and the copies that are sampled.
-std::optional<GridFields> make_structured(const BenchJob& job, const PreparedScene& prepared) {
+std::optional<DrawnGrids> make_structured(const BenchJob& job, const PreparedScene& prepared) {
   const KernelSet& kernels = prepared.renderer.kernels();
   const Lattice lattice = lattice_of_size(kernels.box(), 1);
   const double bytes = 2 * sample_bytes(lattice, kernels.fields.size());
   if (bytes > static_cast<double>(job.workplace.memory())) return std::nullopt;
-  return GridFields(resample(kernels, lattice), Reconstruction::trilinear, kernels.box());
+  return DrawnGrids(resample(kernels, lattice), Reconstruction::trilinear, kernels.box());
 }
 
 /// Measures the engines that are slower by far only where that does not take too long.
@@ -81,7 +81,7 @@ void measure_slow_engines(const BenchJob& job, const Variant& lit, PreparedScene
 }
 
 Row measure_row(const BenchJob& job, const BenchScene& entry, PreparedScene& prepared,
-                const std::optional<GridFields>& structured, bool close, Console& console) {
+                const std::optional<DrawnGrids>& structured, bool close, Console& console) {
   ResolvedScene scene = prepared.resolved;
   if (close) scene.camera = moved_closer(scene.camera, entry.close);
   std::vector<Variant> variants;
@@ -259,7 +259,7 @@ void run_table2(const BenchJob& job) {
   for (const BenchScene* entry : job.scenes) {
     Console console;
     PreparedScene prepared = prepare_bench_scene(job, *entry, console);
-    const std::optional<GridFields> structured = make_structured(job, prepared);
+    const std::optional<DrawnGrids> structured = make_structured(job, prepared);
     for (const bool close : {false, true}) {
       rows.push_back(measure_row(job, *entry, prepared, structured, close, console));
       print(rows.back());
