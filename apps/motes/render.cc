@@ -117,6 +117,11 @@ void run(const Options& options) {
 
   Scene scene = open_scene(options.path);
   refuse_same_file(outputs, {"data.path", scene.data_path});
+  for (const Field& field : scene.fields) {
+    if (field.grid && !field.grid->path.empty()) {
+      refuse_same_file(outputs, {"fields.grid", field.grid->path});
+    }
+  }
   options.changes.apply(scene);
   Statistics statistics;
   const PreparedScene prepared =
@@ -128,7 +133,7 @@ void run(const Options& options) {
     saved_scene->write(scene_to_json(prepared.filled_in, directory));
   }
   const bool between_samples =
-      warn_of_large_steps(renderer.kernels(), prepared.resolved.step_size, console.warnings());
+      warn_of_large_steps(renderer, prepared.resolved.step_size, console.warnings());
   statistics.read_ms = prepared.read_ms;
   statistics.build_ms = renderer.build_ms();
   statistics.particles = renderer.kernels().size();
@@ -138,7 +143,7 @@ void run(const Options& options) {
   const Framebuffer image = with_place(options.path, options.changes, [&] {
     return render_frames(renderer, prepared.resolved, options, console, statistics);
   });
-  warn_of_empty_picture(image, renderer.kernels(), prepared.resolved.camera, prepared.extent,
+  warn_of_empty_picture(image, renderer, prepared.resolved.camera, prepared.extent,
                         between_samples, console.warnings());
   write_image(output, format, image, scene.render.termination_opacity, scene.render.background);
   output.commit();

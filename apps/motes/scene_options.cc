@@ -120,8 +120,17 @@ void add_number_or_property(CLI::App& command, SceneChanges& changes, const std:
                }
                const NumberOrProperty value =
                    number ? NumberOrProperty(*number) : NumberOrProperty(text);
-               return [member, value](Scene& scene) {
-                 for_each_field(scene, [&](Field& field) { field.*member = value; });
+               return [name, member, value](Scene& scene) {
+                 bool any = false;
+                 for_each_field(scene, [&](Field& field) {
+                   if (field.grid) return;
+                   field.*member = value;
+                   any = true;
+                 });
+                 if (!any) {
+                   throw Error(fmt::format(
+                       "{}: is for fields of particles, and all of the scene's are grids", name));
+                 }
                };
              });
 }
@@ -203,20 +212,6 @@ SceneChanges::Change read_transfer_function_option(const std::string& text) {
   };
 }
 
-/// What a style draws besides the fields, if anything.
-std::vector<Geometry> geometry_of_style(std::string_view style) {
-  Geometry balls, sticks;
-  sticks.type = Geometry::Type::sticks;
-  sticks.radius = 0.15;
-  if (style == "spheres") return {balls};
-  balls.scale = 0.25;
-  if (style == "ball-and-stick") return {balls, sticks};
-  balls.scale = 0.15;
-  sticks.radius = 0.08;
-  if (style == "volume+balls") return {balls, sticks};
-  return {};
-}
-
 SceneChanges::Change read_style(const std::string& text) {
   const std::vector<std::string> names{"volume", "spheres", "ball-and-stick", "volume+balls"};
   if (std::find(names.begin(), names.end(), text) == names.end()) {
@@ -232,6 +227,23 @@ SceneChanges::Change read_style(const std::string& text) {
       scene.fields.emplace_back().name = "all";
     }
   };
+}
+
+SceneChanges::Change read_interpolation(const std::string& text) {
+  try {
+    return [interpolation = interpolation_from_name(text)](Scene& scene) {
+      bool any = false;
+      for (Field& field : scene.fields) {
+        if (!field.grid) continue;
+        field.grid->interpolation = interpolation;
+        any = true;
+      }
+      if (!any) throw Error("--interpolation: is for grids, and none of the fields is one");
+    };
+  } catch (const Error& error) {
+    throw CLI::ValidationError(fmt::format("--interpolation: {}", error.what()),
+                               CLI::ExitCodes::ValidationError);
+  }
 }
 
 SceneChanges::Change read_engine(const std::string& text) {
@@ -285,6 +297,19 @@ void add_lighting_options(CLI::App& command, SceneChanges& changes) {
 }
 
 }  // namespace
+
+std::vector<Geometry> geometry_of_style(std::string_view style) {
+  Geometry balls, sticks;
+  sticks.type = Geometry::Type::sticks;
+  sticks.radius = 0.15;
+  if (style == "spheres") return {balls};
+  balls.scale = 0.25;
+  if (style == "ball-and-stick") return {balls, sticks};
+  balls.scale = 0.15;
+  sticks.radius = 0.08;
+  if (style == "volume+balls") return {balls, sticks};
+  return {};
+}
 
 bool SceneChanges::contains(const std::string& option) const {
   return std::any_of(changes_.begin(), changes_.end(),
@@ -341,6 +366,10 @@ void add_field_options(CLI::App& command, SceneChanges& changes) {
              "gaussian, cubic_spline, quintic_spline, wendland_c2, wendland_c4, wendland_c6,\n"
              "or a file of two columns, distance and value (default: gaussian)",
              read_kernel);
+  add_option(command, changes, "--interpolation", "NAME",
+             "how grids are reconstructed: trilinear, tricubic (B-spline through the samples) or\n"
+             "tricubic_smoothing (default: trilinear)",
+             read_interpolation);
   add_number(command, changes, "--support-factor", "S",
              "the Gaussians end at S standard deviations (default: 2)", positive,
              [](Scene& scene, double v) {

@@ -12,6 +12,8 @@ struct ShadingConstants {
         shininess = 1;  ///< used where the buffer has gradients
   bool headlight = true;
   float light[3] = {0, 0, -1};    ///< unit vector towards the light, camera axes; unless headlight
+  /// Values may be NaN: there the field is not, and shows nothing.
+  bool has_gaps = false;
   std::vector<float> min_radius;  ///< internal length, one a field
 };
 

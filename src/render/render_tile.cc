@@ -19,6 +19,7 @@
 #include "render/ray_packets.h"
 #include "render/ray_state-inl.h"
 #include "render/render_sweep-inl.h"
+#include "render/sample_grids-inl.h"
 #include "render/tile_output-inl.h"
 #include "samples/lanes-inl.h"
 
@@ -48,6 +49,17 @@ std::uint64_t sample_field(const FrameContext& context, const SamplingConstants&
   return sample.template operator()<false, false>();
 }
 
+/// Pass 1 for one slab, of the fields that are grids.
+void sample_grids(const FrameContext& context, const RayPacket& packet, const Slab& slab,
+                  SampleBuffer& buffer) {
+  const std::size_t stride = buffer.layout().floats_per_sample();
+  for (const FrameGrid& grid : context.grids) {
+    sample_frame_grid(grid, packet, context.view.planes, slab, context.gradients, context.absolute,
+                      buffer.at(0, static_cast<int>(grid.field)), stride,
+                      [&](int i) { buffer.touch(i, i); });
+  }
+}
+
 /// The paper's multi-pass algorithm (section 4.2): slab by slab, sampling then integrating, until
 /// all rays of the packet have ended. Returns kernel evaluations.
 std::uint64_t render_packet(const FrameContext& context, const SamplingConstants& constants,
@@ -58,7 +70,10 @@ std::uint64_t render_packet(const FrameContext& context, const SamplingConstants
   for (SampleIndex k = rays.begin; k <= rays.end; k += context.samples_per_pass) {
     const Slab slab{k, std::min(rays.end - k + 1, context.samples_per_pass)};
     buffer.reserve(slab.count);
-    evaluations += sample_field(context, constants, packet, rays, slab, buffer);
+    if (context.any_kernels) {
+      evaluations += sample_field(context, constants, packet, rays, slab, buffer);
+    }
+    sample_grids(context, packet, slab, buffer);
     clock.lap(Stage::sums);
     integrator.run(slab, buffer, rays, layers);
     clear_touched(buffer);

@@ -58,15 +58,15 @@ ShadingConstants make_shading(const ResolvedScene& scene, const CameraAxes& axes
 constexpr int max_single_pass = 1 << 16;
 
 /// Refuses steps so small that a frame would never end.
-void check_step(const KernelSet& kernels, const ResolvedScene& scene) {
+void check_step(const Bounds3d& box, const ResolvedScene& scene) {
   constexpr double max_samples = 1e7;
-  const double samples = length(kernels.box().diagonal()) / scene.step_size;
+  const double samples = length(box.diagonal()) / scene.step_size;
   if (samples > max_samples) {
     throw Error(fmt::format(
         "render.step_size: {:g} takes {:.3g} samples through the volume; expected {:g} or more",
         scene.step_size, samples, samples * scene.step_size / max_samples));
   }
-  const double farthest = length(kernels.box().center() - scene.camera.eye);
+  const double farthest = length(box.center() - scene.camera.eye);
   constexpr double max_index = 4503599627370496.0;  // 2^52: depths of planes are still exact
   if (farthest / scene.step_size > max_index) {
     throw Error(
@@ -87,9 +87,10 @@ View make_view(const CameraAxes& axes, const Point3d& eye, const Bounds3d& box, 
   return {axes, eye, {static_cast<std::int64_t>(std::max(first, 0.0)), step}};
 }
 
-FrameContext make_context(const KernelSet& kernels, const ResolvedScene& scene,
-                          const RenderOptions& options) {
-  check_step(kernels, scene);
+FrameContext make_context(const KernelSet& kernels, const GridFields& grids,
+                          const ResolvedScene& scene, const RenderOptions& options) {
+  const Bounds3d box = volume_box(kernels, grids);
+  check_step(box, scene);
   const CameraAxes axes = camera_axes(scene.camera);
   FrameContext context;
   context.kernels = &kernels;
@@ -98,7 +99,6 @@ FrameContext make_context(const KernelSet& kernels, const ResolvedScene& scene,
   context.orthographic = scene.camera.orthographic_height.has_value();
   context.half_height = internal_half_height(kernels, scene.camera);
   context.half_width = context.half_height * context.width / context.height;
-  const Bounds3d box = kernels.box();
   context.box = {to_internal(kernels, box.min), to_internal(kernels, box.max)};
   context.view = make_view(axes, to_internal(kernels, scene.camera.eye), context.box,
                            scene.step_size * kernels.length_scale);
@@ -107,12 +107,17 @@ FrameContext make_context(const KernelSet& kernels, const ResolvedScene& scene,
         scene.transfer_functions[f], kernels.fields[f].value_scale, scene.step_size));
     context.absolute = context.absolute || kernels.fields[f].mixed_signs;
   }
+  context.grids = make_frame_grids(grids, kernels, context.view, scene.transfer_functions,
+                                   context.classifiers);
+  context.any_kernels = grids.size() < kernels.fields.size();
   context.shading = make_shading(scene, axes, kernels);
+  context.shading.has_gaps = !grids.empty();
   if (!context.orthographic) {
     context.shading.max_ray_length =
         static_cast<float>(std::hypot(1, context.half_width, context.half_height));
   }
-  context.engine = scene.render.engine;
+  // Without kernels engines are all the same.
+  context.engine = context.any_kernels ? scene.render.engine : Engine::coherent;
   context.count_inside = options.count_inside && context.engine == Engine::sweep;
   context.gradients = scene.render.lighting.enabled && !context.count_inside;
   context.absolute = context.absolute && context.gradients;
@@ -191,7 +196,9 @@ Renderer::Renderer(const ParticleSet& particles, const std::vector<FieldSource>&
                    const GeometrySource& geometry) {
   const Stopwatch stopwatch;
   if (geometry.empty()) {
+    grids_ = make_grid_fields(fields);
     *kernels_ = build_kernel_set(particles, fields);
+    set_units(grids_, *kernels_);
   } else {
     build(particles, fields, geometry);
     order_ = {};
@@ -203,8 +210,10 @@ void Renderer::build(const ParticleSet& particles, const std::vector<FieldSource
                      const GeometrySource& geometry) {
   surface_.reset();
   *kernels_ = {};  // its memory is free before the new one needs it
+  grids_ = make_grid_fields(fields);
   const auto build_from = [&](const std::vector<FieldSource>& sources) {
     *kernels_ = build_kernel_set(particles, sources, &order_);
+    set_units(grids_, *kernels_);
     if (geometry.empty()) return;
     surface_ = make_surface(particles, geometry, sources, order_, *kernels_);
   };
@@ -221,7 +230,10 @@ TreeUpdate Renderer::set_particles(const ParticleSet& particles,
   const Stopwatch stopwatch;
   cells_.reset();
   TreeUpdate update = TreeUpdate::refitted;
-  if (!geometry.empty() || surface_ || !refit_kernel_set(particles, fields, order_, *kernels_)) {
+  const bool any_grids = std::any_of(fields.begin(), fields.end(),
+                                     [](const FieldSource& field) { return field.grid != nullptr; });
+  if (!geometry.empty() || surface_ || any_grids || !grids_.empty() ||
+      !refit_kernel_set(particles, fields, order_, *kernels_)) {
     update = TreeUpdate::rebuilt;
     build(particles, fields, geometry);
   }
@@ -261,7 +273,7 @@ void Renderer::render(const ResolvedScene& scene, const RenderOptions& options, 
   TileCounts all;
   std::optional<SurfaceFrame> surface;
   if (surface_) surface = frame_of(*surface_, scene);
-  if (kernels_->fields.empty() || kernels_->size() == 0) {
+  if (kernels_->fields.empty() || (kernels_->size() == 0 && grids_.empty())) {
     std::fill(image.rgba.begin(), image.rgba.end(), 0.0f);
     if (surface) {
       for_tiles(scene, options, AreaBuffer::size, [&](const Tile& tile) {
@@ -271,7 +283,7 @@ void Renderer::render(const ResolvedScene& scene, const RenderOptions& options, 
       });
     }
   } else {
-    FrameContext context = make_context(*kernels_, scene, options);
+    FrameContext context = make_context(*kernels_, grids_, scene, options);
     if (surface && !context.layers) {
       const double thickness = merged_steps * context.view.planes.step;
       context.layers = [&surface, thickness](const Tile& tile, TileLayers& out) {

@@ -21,7 +21,7 @@ bool is_open(const Field& field) {
 ResolvedScene resolve(const Scene& scene, const ParticleSet& particles,
                       const std::vector<Field>& fields, const std::vector<FieldSource>& sources,
                       const GeometrySource& geometry, const KernelSet& kernels,
-                      Progress* progress) {
+                      Progress* progress, const GridFields& grids) {
   ResolvedScene resolved;
   resolved.render = scene.render;
   const double aspect = static_cast<double>(scene.render.width) / scene.render.height;
@@ -31,13 +31,13 @@ ResolvedScene resolve(const Scene& scene, const ParticleSet& particles,
   if (scene.render.step_size) {
     resolved.step_size = *scene.render.step_size;
   } else if (!fields.empty()) {
-    resolved.step_size = default_step_size(sources, kernels.box());
+    resolved.step_size = default_step_size(sources, volume_box(kernels, grids));
   }
   // Without rays where nothing is left to fit: it would be work for nothing.
   std::vector<RayProfiles> profiles(fields.size(), RayProfiles{{}, {0}, {}});
   if (std::any_of(fields.begin(), fields.end(), is_open)) {
-    profiles =
-        sample_view(kernels, resolved.camera, scene.render.width, scene.render.height, progress);
+    profiles = sample_view(kernels, resolved.camera, scene.render.width, scene.render.height,
+                           progress, grids);
   }
   const double opacity = fit_opacity(profiles, scene.render.background);
   for (std::size_t f = 0; f < fields.size(); ++f) {
