@@ -87,6 +87,10 @@ struct Prepared {
 };
 
 Prepared prepare(const Scene& scene, const Options& options, Console& console) {
+  for (const Field& field : scene.fields) {
+    if (!field.grid) continue;
+    throw Error(options.path, "has a field that is a grid already; expected fields of particles");
+  }
   const Input input = read_particles(scene, console);
   return with_place(options.path, options.changes, [&]() -> Prepared {
     const auto fields = make_field_sources(input.particles, expand_fields(scene, input.particles),

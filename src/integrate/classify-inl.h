@@ -211,7 +211,7 @@ HWY_INLINE std::array<Lanes, 4> read_record(LaneTag d, const Classifier& c,
 /// The classifier's argument for a value of the buffer, with a logarithmic scale. Finite also where
 /// there is no logarithm, so that it lies above a Visibility::above of -infinity and a flat segment
 /// makes no NaN of it.
-inline HWY_NOINLINE Lanes logarithmic_argument(LaneTag d, const Classifier& c, Lanes value) {
+HWY_NOINLINE Lanes logarithmic_argument(LaneTag d, const Classifier& c, Lanes value) {
   const Lanes tiny = hn::Set(d, std::numeric_limits<float>::min());
   const Lanes logarithm = hn::Add(hn::Log10(d, hn::Max(value, tiny)), hn::Set(d, c.log_shift));
   return hn::IfThenElse(hn::Ge(value, tiny), logarithm,
@@ -219,7 +219,7 @@ inline HWY_NOINLINE Lanes logarithmic_argument(LaneTag d, const Classifier& c, L
 }
 
 /// x^power for x in [0, 1], power >= 0.
-inline HWY_NOINLINE Lanes general_power(LaneTag d, Lanes x, float power) {
+HWY_NOINLINE Lanes general_power(LaneTag d, Lanes x, float power) {
   if (power == 0) return hn::Set(d, 1.0f);
   const Lanes tiny = hn::Set(d, std::numeric_limits<float>::min());
   const Lanes exponent = hn::Mul(hn::Set(d, power), hn::Log(d, hn::Max(x, tiny)));

@@ -120,6 +120,8 @@ TEST_F(ResampleCommand, FailsWithoutHarm) {
   EXPECT_THAT(failure("resample a.xyz -o a.vti --radius none", 1), HasSubstr("--radius"));
   EXPECT_THAT(failure("resample a.xyz -o a.vti --kernel-scale 1e-50", 1),
               HasSubstr("expected a kernel_scale around"));
+  succeed("resample a.xyz -o grid.vti --voxels 5");
+  EXPECT_THAT(failure("resample grid.vti -o a.vti", 1), HasSubstr("is a grid already"));
   EXPECT_THAT(failure("resample same.json -o a.nrrd", 1), HasSubstr("'a_b'"));
   EXPECT_EQ(workspace_.read("a.vti"), "old");
   succeed("resample same.json -o b.vti --voxels 5");

@@ -104,6 +104,7 @@ ParticleSet random_particles(int count, double size, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> place(0, size);
   std::vector<Point3d> points;
+  points.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) {
     points.push_back({1e6 + place(random), place(random), place(random)});
   }

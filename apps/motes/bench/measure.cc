@@ -9,7 +9,6 @@
 #include <numeric>
 
 #include "core/error.h"
-#include "core/stopwatch.h"
 #include "motes/frame_times.h"
 
 namespace motes {
@@ -116,24 +115,6 @@ std::vector<FrameTimes> measure_frames(const std::vector<Variant>& variants,
     results[v].frames = static_cast<int>(times[v].size());
   }
   return results;
-}
-
-FrameTimes time_frames(const std::function<void()>& draw, const BenchOptions& options,
-                       double patience_ms) {
-  std::vector<double> times;
-  for (int frame = -1; frame < options.repeat; ++frame) {
-    const Stopwatch stopwatch;
-    draw();
-    const double ms = stopwatch.milliseconds();
-    const bool too_long = frame < 0 && ms > patience_ms;
-    if (frame >= 0 || too_long) times.push_back(ms);
-    if (too_long) break;
-  }
-  FrameTimes result;
-  result.median_ms = median(times);
-  result.min_ms = *std::ranges::min_element(times);
-  result.frames = static_cast<int>(times.size());
-  return result;
 }
 
 double geometric_mean(const std::vector<double>& values) {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <limits>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -60,11 +59,6 @@ nlohmann::ordered_json to_json(const FrameTimes& times);
 /// alike; each is warmed up by a frame. One result a variant.
 std::vector<FrameTimes> measure_frames(const std::vector<Variant>& variants,
                                        const BenchOptions& options, Console& console);
-
-/// Times of `draw` alone: called once to warm up, and then as often as the options say unless that
-/// took longer than `patience_ms`, which counts then.
-FrameTimes time_frames(const std::function<void()>& draw, const BenchOptions& options,
-                       double patience_ms = std::numeric_limits<double>::infinity());
 
 double geometric_mean(const std::vector<double>& values);
 

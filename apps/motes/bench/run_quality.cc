@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <deque>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -11,10 +12,9 @@
 #include <vector>
 
 #include "core/stopwatch.h"
-#include "grid/resample.h"
 #include "image/compare.h"
 #include "image/write_image.h"
-#include "motes/bench/draw_grids.h"
+#include "motes/bench/grids.h"
 #include "motes/bench/measure.h"
 #include "motes/bench/report.h"
 
@@ -38,8 +38,8 @@ struct Row {
   std::size_t bytes = 0;  ///< that the picture is made of
   double resample_ms = 0, build_ms = 0, frame_ms = 0;
   double rms = 0, max = 0;  ///< of linear channels
-  std::optional<double> signal_to_noise = std::nullopt;
-  std::string picture = "";
+  std::optional<double> signal_to_noise;
+  std::string picture;
 };
 
 /// The piece of the fracture around the crack's tip.
@@ -138,25 +138,32 @@ nlohmann::ordered_json to_json(const Row& row) {
 
 /// All reconstructions of the grids of one voxel size; returns the pictures, one a way.
 std::vector<Framebuffer> add_grids(const BenchJob& job, const PreparedScene& prepared,
-                                   double voxel_size, Comparison& comparison) {
+                                   double voxel_size, Comparison& comparison, Console& console) {
   const KernelSet& kernels = prepared.renderer.kernels();
-  const Bounds3d box = kernels.box();
-  const Lattice lattice = lattice_of_size(box, voxel_size);
+  const Lattice lattice = lattice_of_size(kernels.box(), voxel_size);
   // With the copies that are sampled.
-  expect_to_fit(lattice, 2 * kernels.fields.size(), job.workplace.memory());
+  expect_to_fit(lattice, (1 + std::size(ways)) * kernels.fields.size(), job.workplace.memory());
   const Stopwatch stopwatch;
-  const std::vector<Grid> grids = resample(kernels, lattice);
+  const auto grids = resample_all(kernels, lattice);
   const double resample_ms = stopwatch.milliseconds();
-  std::vector<Framebuffer> images;
+  std::deque<Renderer> renderers;
+  std::vector<Variant> variants;
   for (const Way& way : ways) {
-    const Stopwatch build;
-    const DrawnGrids fields(grids, way.reconstruction, box);
-    Row row{std::string(way.name), voxel_size, fields.num_bytes(), resample_ms,
-            build.milliseconds()};
-    Framebuffer& image = images.emplace_back();
-    row.frame_ms =
-        time_frames([&] { draw_grids(fields, prepared.resolved, image); }, job.options).median_ms;
-    comparison.add(std::move(row), image);
+    renderers.push_back(make_grid_renderer(grids, way.reconstruction));
+    variants.push_back({&renderers.back(), prepared.resolved});
+    variants.back().patience_ms = 500;  // so that all of them take about a minute
+  }
+  const std::vector<FrameTimes> times = measure_frames(variants, job.options, console);
+  std::vector<Framebuffer> images;
+  for (std::size_t i = 0; i < std::size(ways); ++i) {
+    images.push_back(renderers[i].render(prepared.resolved, {job.options.threads, {}, nullptr}));
+    comparison.add({.name = std::string(ways[i].name),
+                    .voxel_size = voxel_size,
+                    .bytes = grid_bytes(renderers[i]),
+                    .resample_ms = resample_ms,
+                    .build_ms = renderers[i].build_ms(),
+                    .frame_ms = times[i].median_ms},
+                   images.back());
   }
   return images;
 }
@@ -177,18 +184,20 @@ void run_quality(const BenchJob& job) {
   fmt::print("{:<20}{:>7}{:>12}{:>11}{:>10}{:>10}{:>10}{:>9}{:>9}  {}\n", "drawn from", "of", "MB",
              "ms", "ms", "ms", "error", "error", "dB", "picture");
   Comparison comparison(job, prepared.resolved);
-  Framebuffer truth;
-  Row field{"field", std::nullopt,
-            renderer.kernels().particle_bytes() + renderer.kernels().bvh.bytes(), 0,
-            renderer.build_ms()};
-  const RenderOptions options{job.options.threads, std::nullopt, nullptr};
-  field.frame_ms =
-      time_frames([&] { renderer.render(prepared.resolved, options, truth); }, job.options)
-          .median_ms;
-  comparison.add(std::move(field), truth);
+  const FrameTimes times =
+      measure_frames({{&renderer, prepared.resolved}}, job.options, console)[0];
+  const Framebuffer truth =
+      renderer.render(prepared.resolved, {job.options.threads, std::nullopt, nullptr});
+  comparison.add({.name = "field",
+                  .bytes = renderer.kernels().particle_bytes() + renderer.kernels().bvh.bytes(),
+                  .build_ms = renderer.build_ms(),
+                  .frame_ms = times.median_ms},
+                 truth);
+
   std::vector<Framebuffer> figure{truth};
   for (const double voxel_size : voxel_sizes) {
-    const std::vector<Framebuffer> images = add_grids(job, prepared, voxel_size, comparison);
+    const std::vector<Framebuffer> images =
+        add_grids(job, prepared, voxel_size, comparison, console);
     // As in the paper's figure: the field, trilinear and tricubic from one voxel an angstrom.
     if (voxel_size == 1) figure.insert(figure.end(), images.begin(), images.begin() + 2);
   }

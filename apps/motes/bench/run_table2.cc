@@ -10,9 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "grid/resample.h"
 #include "motes/bench/chart.h"
-#include "motes/bench/draw_grids.h"
+#include "motes/bench/grids.h"
 #include "motes/bench/measure.h"
 #include "motes/bench/report.h"
 
@@ -55,14 +54,14 @@ struct Row {
 /// Frames of which one takes longer are slow.
 constexpr double patience_ms = 2000;
 
-/// Grids of the scene's fields, of voxels of 1, as the paper has them; nothing where there is not
-/// memory enough for them and the copies that are sampled.
-std::optional<DrawnGrids> make_structured(const BenchJob& job, const PreparedScene& prepared) {
+/// A renderer of grids of the scene's fields, of voxels of 1, as the paper has them; nothing where
+/// there is not memory enough for them and the copies that are sampled.
+std::optional<Renderer> make_structured(const BenchJob& job, const PreparedScene& prepared) {
   const KernelSet& kernels = prepared.renderer.kernels();
   const Lattice lattice = lattice_of_size(kernels.box(), 1);
   const double bytes = 2 * sample_bytes(lattice, kernels.fields.size());
   if (bytes > static_cast<double>(job.workplace.memory())) return std::nullopt;
-  return DrawnGrids(resample(kernels, lattice), Reconstruction::trilinear, kernels.box());
+  return make_grid_renderer(resample_all(kernels, lattice), Reconstruction::trilinear);
 }
 
 /// Measures the engines that are slower by far only where that does not take too long.
@@ -81,7 +80,7 @@ void measure_slow_engines(const BenchJob& job, const Variant& lit, PreparedScene
 }
 
 Row measure_row(const BenchJob& job, const BenchScene& entry, PreparedScene& prepared,
-                const std::optional<DrawnGrids>& structured, bool close, Console& console) {
+                const std::optional<Renderer>& structured, bool close, Console& console) {
   ResolvedScene scene = prepared.resolved;
   if (close) scene.camera = moved_closer(scene.camera, entry.close);
   std::vector<Variant> variants;
@@ -95,10 +94,10 @@ Row measure_row(const BenchJob& job, const BenchScene& entry, PreparedScene& pre
   Row row{&entry, close, scene.camera, {times[0], times[1]}, {times[2], times[3]}, std::nullopt, {},
           {},     0};
   if (structured) {
-    row.structured_bytes = structured->num_bytes();
-    Framebuffer image;
-    const auto draw = [&] { draw_grids(*structured, variants[0].scene, image); };
-    row.structured = time_frames(draw, job.options, patience_ms);
+    row.structured_bytes = grid_bytes(*structured);
+    Variant variant{&*structured, variants[0].scene};
+    variant.patience_ms = patience_ms;
+    row.structured = measure_frames({variant}, job.options, console)[0];
   }
   measure_slow_engines(job, variants[0], prepared, row, console);
   return row;
@@ -259,7 +258,7 @@ void run_table2(const BenchJob& job) {
   for (const BenchScene* entry : job.scenes) {
     Console console;
     PreparedScene prepared = prepare_bench_scene(job, *entry, console);
-    const std::optional<DrawnGrids> structured = make_structured(job, prepared);
+    const std::optional<Renderer> structured = make_structured(job, prepared);
     for (const bool close : {false, true}) {
       rows.push_back(measure_row(job, *entry, prepared, structured, close, console));
       print(rows.back());
