@@ -11,12 +11,14 @@
 #include "core/stopwatch.h"
 #include "io/grid_reader.h"
 #include "io/reader.h"
+#include "scene/style.h"
 
 namespace motes {
 
 namespace {
 
-/// Throws Error, as a fault of the scene at `scene_path`, if the file that `key` names is not there.
+/// Throws Error, as a fault of the scene at `scene_path`, if the file that `key` names is not
+/// there.
 void check_exists(const std::filesystem::path& file, const std::string& key,
                   const std::filesystem::path& scene_path) {
   std::error_code error;
@@ -25,12 +27,18 @@ void check_exists(const std::filesystem::path& file, const std::string& key,
               fmt::format("{}: {}: there is no such file", key, printable(file.string(), 4096)));
 }
 
-/// Makes the grids of its data the fields of a scene without any, and shows the atoms, if there are
-/// some.
+/// Makes the grids of its data the fields of a scene that leaves these to the data, and shows the
+/// atoms too, if there are some and no style says what is drawn.
 void show_grids(Scene& scene) {
-  if (!scene.fields.empty() || !scene.geometry.empty() || !is_grid_file(scene.data_path)) return;
-  scene.fields.emplace_back().grid.emplace();
-  if (has_particles(scene.data_path)) scene.geometry = geometry_of_style("volume+balls");
+  Field of_style;
+  of_style.name = "all";
+  const bool has_style = scene.fields == std::vector<Field>{of_style};
+  const bool is_open = scene.fields.empty() && scene.geometry.empty();
+  if (!(is_open || has_style) || !is_grid_file(scene.data_path)) return;
+  scene.fields.assign(1, {});
+  scene.fields[0].grid.emplace();
+  if (!has_style && has_particles(scene.data_path))
+    scene.geometry = geometry_of_style("volume+balls");
 }
 
 bool shows_particles(const Scene& scene) {

@@ -21,9 +21,8 @@ PreparedScene prepare_scene(Scene scene, const ParticleSet& particles,
     console.print_warnings();
     console.update("building the tree", 0);
     Renderer renderer(particles, sources, geometry);
-    ResolvedScene resolved =
-        resolve(scene, particles, fields, sources, geometry, renderer.kernels(), &console,
-                renderer.grids());
+    ResolvedScene resolved = resolve(scene, particles, fields, sources, geometry,
+                                     renderer.kernels(), &console, renderer.grids());
     renderer.prepare(resolved.render.engine);
     console.finish();
     Scene filled_in = fill_in(scene, fields, sources, resolved);
@@ -32,10 +31,7 @@ PreparedScene prepare_scene(Scene scene, const ParticleSet& particles,
       extent.bounds.add(grid.sampler->bounds());
       if (particles.size() == 0) extent.length_unit = sources[grid.field].grid->length_unit;
     }
-    return {std::move(renderer),
-            std::move(resolved),
-            std::move(filled_in),
-            std::move(extent)};
+    return {std::move(renderer), std::move(resolved), std::move(filled_in), std::move(extent)};
   });
 }
 

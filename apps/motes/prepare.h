@@ -21,7 +21,8 @@ struct PreparedScene {
 };
 
 /// Gathers the scene's fields of `particles`, builds the tree and fits what the scene leaves open;
-/// `particles` and `grids` are not needed afterwards. `path` is the file that messages name (with_place()).
+/// `particles` and `grids` are not needed afterwards. `path` is the file that messages name
+/// (with_place()).
 PreparedScene prepare_scene(Scene scene, const ParticleSet& particles,
                             const std::filesystem::path& path, const SceneChanges& changes,
                             Console& console, const std::vector<LoadedGrid>& grids = {});

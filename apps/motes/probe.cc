@@ -81,8 +81,8 @@ void run(const Options& options) {
   });
   console.print_warnings();
   const KernelSet kernels = build_kernel_set(input.particles, fields);
-  const GridFields grids = with_place(options.path, options.changes,
-                                      [&] { return make_grid_fields(fields); });
+  const GridFields grids =
+      with_place(options.path, options.changes, [&] { return make_grid_fields(fields); });
   constexpr double nowhere = std::numeric_limits<double>::quiet_NaN();
   const std::string csv = to_csv(points, fields, probe(kernels, grids, points, nowhere));
   if (output) {

@@ -13,6 +13,7 @@
 #include <optional>
 
 #include "core/error.h"
+#include "scene/style.h"
 
 namespace motes {
 namespace {
@@ -100,6 +101,22 @@ void add_triple(CLI::App& command, SceneChanges& changes, const std::string& nam
                  set(scene, vector);
                };
              });
+}
+
+/// Plane after plane, in place of the scene's own.
+SceneChanges::Change read_clip_planes(const std::vector<std::string>& texts) {
+  std::vector<ClipPlane> planes;
+  for (const std::string& text : texts) {
+    const auto comma = text.rfind(',');
+    const auto normal = triple_in(text.substr(0, comma));
+    const auto distance = number_in(text.substr(std::min(comma, text.size() - 1) + 1));
+    if (!normal || !distance || !std::isfinite(*distance)) {
+      bad_value("--clip-plane", "a normal and a distance from the origin such as 0,0,1,12.5", text);
+    }
+    planes.push_back({{(*normal)[0], (*normal)[1], (*normal)[2]}, *distance});
+    if (!(length(planes.back().normal) > 0)) throw Error("--clip-plane: a normal must not be zero");
+  }
+  return [planes](Scene& scene) { scene.render.clip_planes = planes; };
 }
 
 /// Calls `change` for every field; a scene without any gets the one that it stands for.
@@ -213,20 +230,13 @@ SceneChanges::Change read_transfer_function_option(const std::string& text) {
 }
 
 SceneChanges::Change read_style(const std::string& text) {
-  const std::vector<std::string> names{"volume", "spheres", "ball-and-stick", "volume+balls"};
-  if (std::find(names.begin(), names.end(), text) == names.end()) {
-    throw CLI::ValidationError(
-        fmt::format("--style: {}", unknown_name("style", text, names).what()),
-        CLI::ExitCodes::ValidationError);
+  try {
+    geometry_of_style(text);
+  } catch (const Error& error) {
+    throw CLI::ValidationError(fmt::format("--style: {}", error.what()),
+                               CLI::ExitCodes::ValidationError);
   }
-  return [text](Scene& scene) {
-    scene.geometry = geometry_of_style(text);
-    if (text == "spheres" || text == "ball-and-stick") {
-      scene.fields.clear();
-    } else if (scene.fields.empty()) {
-      scene.fields.emplace_back().name = "all";
-    }
-  };
+  return [text](Scene& scene) { apply_style(text, scene); };
 }
 
 SceneChanges::Change read_interpolation(const std::string& text) {
@@ -297,19 +307,6 @@ void add_lighting_options(CLI::App& command, SceneChanges& changes) {
 }
 
 }  // namespace
-
-std::vector<Geometry> geometry_of_style(std::string_view style) {
-  Geometry balls, sticks;
-  sticks.type = Geometry::Type::sticks;
-  sticks.radius = 0.15;
-  if (style == "spheres") return {balls};
-  balls.scale = 0.25;
-  if (style == "ball-and-stick") return {balls, sticks};
-  balls.scale = 0.15;
-  sticks.radius = 0.08;
-  if (style == "volume+balls") return {balls, sticks};
-  return {};
-}
 
 bool SceneChanges::contains(const std::string& option) const {
   return std::any_of(changes_.begin(), changes_.end(),
@@ -407,9 +404,17 @@ void add_picture_options(CLI::App& command, SceneChanges& changes) {
   add_number(command, changes, "--termination-opacity", "A",
              "opacity at which a ray stops (default: 0.97)", opacity,
              [](Scene& scene, double v) { scene.render.termination_opacity = v; });
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--clip-plane",
+          [&changes](const std::vector<std::string>& texts) {
+            changes.add("--clip-plane", read_clip_planes(texts));
+          },
+          "cuts away what lies farther than D along the normal; may be given again")
+      ->type_name("NX,NY,NZ,D")
+      ->allow_extra_args(false);
   add_option(command, changes, "--style", "NAME",
-             "volume, spheres, ball-and-stick or volume+balls, in place of the scene's geometry",
-             read_style);
+             fmt::format("what is drawn: {}", fmt::join(style_names(), ", ")), read_style);
   add_number(
       command, changes, "--ambient-occlusion", "N",
       "rays a pixel for the ambient occlusion of balls and sticks (default: 16)", ray_count,

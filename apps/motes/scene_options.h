@@ -3,7 +3,6 @@
 
 #include <functional>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -32,9 +31,6 @@ class SceneChanges {
  private:
   std::vector<std::pair<std::string, Change>> changes_;
 };
-
-/// What a style draws besides the fields, if anything.
-std::vector<Geometry> geometry_of_style(std::string_view style);
 
 /// --frame, --types: which particles. `changes` must outlive the parsing.
 void add_data_options(CLI::App& command, SceneChanges& changes);

@@ -276,8 +276,9 @@ struct FrameShading {
   const std::vector<Classifier>& classifiers;
   const ShadingConstants& constants;
   SampleLayout layout;
-  bool zero_shows;  ///< something may be seen where there is no kernel
-  float max_depth;  ///< largest optical depth of a sample
+  bool zero_shows;     ///< something may be seen where there is no kernel
+  bool outside_shows;  ///< so it may outside of rays' first and last samples
+  float max_depth;     ///< largest optical depth of a sample
   /// Where kernels cancel there is no normal: |gradient| <= least_gradient sum |phi|; one a field.
   float least_gradient[max_fields];
 
@@ -287,9 +288,11 @@ struct FrameShading {
         constants(the_constants),
         layout(the_layout),
         zero_shows(false),
+        outside_shows(the_constants.clipped),
         max_depth(0) {
     for (std::size_t f = 0; f < classifiers.size(); ++f) {
       zero_shows |= classifiers[f].visibility.shows_zero();
+      outside_shows |= zero_shows;
       max_depth = std::max(max_depth, classifiers[f].max_depth * constants.max_ray_length);
       least_gradient[f] = 1e-6f / constants.min_radius[f];
     }

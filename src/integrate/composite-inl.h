@@ -67,6 +67,7 @@ struct SeenSamples {
 /// Rays of a block on their way through a slab, samples counted from its begin.
 struct BlockRays {
   Lanes first, last;
+  Lanes enters, leaves;   ///< where in their steps the first sample begins and the last ends
   LaneMask alive;         ///< have samples in the slab and have not ended
   Lanes color[3], alpha;  ///< so far
   Lanes highlight;        ///< light that is white, before the factor for specular light
@@ -78,6 +79,10 @@ struct BlockRays {
     color[2] = hn::Load(d, rays.b);
     alpha = hn::Load(d, rays.a);
     highlight = hn::Zero(d);
+  }
+  HWY_INLINE void load_cuts(LaneTag d, const RayState& rays, bool clipped) {
+    enters = clipped ? hn::Load(d, rays.enters) : hn::Zero(d);
+    leaves = clipped ? hn::Load(d, rays.leaves) : hn::Set(d, 1.0f);
   }
   HWY_INLINE void store_colors(LaneTag d, RayState& rays) const {
     hn::Store(color[0], d, rays.r);
@@ -120,6 +125,17 @@ struct BlockRays {
     alive = hn::AndNot(ends, alive);
     any_ended = true;
     return !hn::AllFalse(d, alive);
+  }
+
+  /// Whether one of the slab's samples is cut by clip planes.
+  HWY_INLINE bool any_cut(LaneTag d, int count) const {
+    const Lanes begin = hn::Zero(d), end = hn::Set(d, static_cast<float>(count));
+    const auto within = [&](Lanes sample) HWY_ATTR {
+      return hn::And(alive, hn::And(hn::Ge(sample, begin), hn::Lt(sample, end)));
+    };
+    const LaneMask first_cut = hn::And(within(first), hn::Gt(enters, begin));
+    const LaneMask last_cut = hn::And(within(last), hn::Lt(leaves, hn::Set(d, 1.0f)));
+    return !hn::AllFalse(d, hn::Or(first_cut, last_cut));
   }
 
   HWY_INLINE LaneMask alive_at(LaneTag d, int sample) const {

@@ -40,8 +40,8 @@ HWY_INLINE bool composite_in_turn(LaneTag d, const FrameShading& frame, const Se
   unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR {
     if (first + n >= seen.count || !go_on) return;
     const int sample = seen.sample(first + n);
-    // Samples outside of the volume show nothing by themselves.
-    const LaneMask add = HWY_UNLIKELY(frame.zero_shows) ? rays.alive_at(d, sample) : rays.alive;
+    // Samples outside of the volume mostly show nothing by themselves.
+    const LaneMask add = HWY_UNLIKELY(frame.outside_shows) ? rays.alive_at(d, sample) : rays.alive;
     const Lanes weight = rays.pass(d, add, samples.opacity[n]);
     rays.add<kGradients>(d, frame.constants, samples, n, weight);
     if (seen.ends_sample(first + n)) go_on = rays.end_opaque(d, termination, sample);
@@ -84,7 +84,7 @@ HWY_NOINLINE void add_seen(LaneTag d, const BlockShading& shading, const SlabSam
     });
     Contributions<N> out;
     classify<kGradients, kPlain, kOneField, kKind>(d, shading, some, out);
-    if (HWY_LIKELY(first + N <= seen.count && !frame.zero_shows) &&
+    if (HWY_LIKELY(first + N <= seen.count && !frame.outside_shows) &&
         composite_unended<kGradients>(d, frame, out, termination, rays)) {
       return true;
     }
@@ -113,7 +113,8 @@ class Integrator {
 
   /// Composites the samples of `slab`, at most max_slab, into the rays' colours. Bit i of
   /// visible[f]: field f may be seen at sample i. A ray that reaches the termination opacity ends.
-  /// `layers` are those in the rays' way, or null. Hot: nothing is checked.
+  /// `layers` are those in the rays' way, or null if there are none and no clip planes either. Hot:
+  /// nothing is checked.
   void run(const Slab& slab, const SlabSamples& samples, const std::uint64_t* visible,
            RayState& rays, BlockLayers* layers = nullptr) const {
     const LaneTag d;
@@ -126,8 +127,10 @@ class Integrator {
     block.load_colors(d, rays);
     const SeenSamples seen(visible, frame_.classifiers.size());
     const BlockShading shading(d, frame_, rays);
+    block.load_cuts(d, rays, frame_.constants.clipped);
     if (layers != nullptr &&
-        any_layer_before(d, *layers, static_cast<float>(slab.first + slab.count))) {
+        (any_layer_before(d, *layers, static_cast<float>(slab.first + slab.count)) ||
+         block.any_cut(d, slab.count))) {
       add_seen_with_layers_(d, shading, samples, seen, slab.first, *layers, block);
     } else {
       add_seen_(d, shading, samples, seen, block);

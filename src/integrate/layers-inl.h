@@ -85,7 +85,8 @@ HWY_INLINE void composite_part(LaneTag d, const BlockShading& shading, const Sla
   }
 }
 
-/// Composites a sample, seen[i] and what follows of it, with the layers within its step.
+/// Composites what clip planes leave of a sample, seen[i] and what follows of it, with the layers
+/// within its step.
 template <bool kGradients>
 HWY_INLINE void composite_between(LaneTag d, const BlockShading& shading,
                                   const SlabSamples& samples, const SeenSamples& seen,
@@ -93,11 +94,14 @@ HWY_INLINE void composite_between(LaneTag d, const BlockShading& shading,
                                   BlockLayers& layers, BlockRays& rays) {
   const Lanes sample = hn::Set(d, static_cast<float>(slab_first + seen.sample(i)));
   LaneMask which = rays.alive_at(d, seen.sample(i));
-  Lanes begin = hn::Zero(d);
+  const Lanes number = hn::Set(d, static_cast<float>(seen.sample(i)));
+  Lanes begin = hn::IfThenElseZero(hn::Eq(rays.first, number), rays.enters);
+  const Lanes whole = hn::IfThenElse(hn::Eq(rays.last, number), rays.leaves, hn::Set(d, 1.0f));
   for (;;) {
     const NextLayer layer(d, layers);
     const LaneMask meets = hn::And(which, hn::Eq(layer.sample, sample));
-    const Lanes end = hn::IfThenElse(meets, layer.fraction, hn::Set(d, 1.0f));
+    const Lanes fraction = hn::IfThenElse(meets, layer.fraction, whole);
+    const Lanes end = hn::Max(begin, hn::Min(fraction, whole));
     composite_part<kGradients>(d, shading, samples, seen, i, which, hn::Sub(end, begin), rays);
     const LaneMask go_on = hn::And(meets, hn::Le(rays.alpha, termination));
     if (hn::AllFalse(d, go_on)) return;

@@ -44,8 +44,8 @@ struct Grid {
   }
 };
 
-/// Corners of the parallelepiped in which the grid's field is: between its outermost samples, or, of
-/// a periodic one, its cell. World coordinates.
+/// Corners of the parallelepiped in which the grid's field is: between its outermost samples, or,
+/// of a periodic one, its cell. World coordinates.
 inline std::array<Point3d, 8> corners_of(const Grid& grid) {
   const auto end = [&grid](std::size_t axis) {
     return static_cast<double>(grid.dims[axis] - (grid.periodic ? 0 : 1));

@@ -19,7 +19,8 @@ namespace motes {
 namespace HWY_NAMESPACE {
 
 /// Sets `out` to the layers of the rays of a block, `width` pixels wide with its top left pixel at
-/// (px, py), and ends rays at layers that let nothing through. False if there are no layers.
+/// (px, py), and ends rays at layers that let nothing through. False if nothing cuts the rays'
+/// steps: no layers, and no clip planes.
 inline bool take_layers(const FrameContext& context, const TileLayers& layers, const Tile& tile,
                         int px, int py, int width, BlockLayers& out, RayState& rays) {
   const int columns = std::min(width, tile.x + tile.width - px);
@@ -28,16 +29,22 @@ inline bool take_layers(const FrameContext& context, const TileLayers& layers, c
     return layers.of(px - tile.x + column, py - tile.y + row);
   };
   std::size_t most = 0;
-  for (int row = 0; row < rows; ++row) {
-    for (int column = 0; column < columns; ++column) most = std::max(most, of(column, row).size());
+  if (context.layers) {
+    for (int row = 0; row < rows; ++row) {
+      for (int column = 0; column < columns; ++column)
+        most = std::max(most, of(column, row).size());
+    }
   }
   out.clear(static_cast<int>(most));
-  if (most == 0) return false;
+  if (most == 0) return !context.clip_planes.empty();
   for (int row = 0; row < rows; ++row) {
     for (int column = 0; column < columns; ++column) {
       const int lane = row * width + column;
       out.set(lane, of(column, row), context.view.planes);
-      rays.last[lane] = std::min(rays.last[lane], out.end_of(lane));
+      const float end = out.end_of(lane);
+      if (end >= rays.last[lane]) continue;
+      rays.last[lane] = end;
+      rays.leaves[lane] = 1;  // the layer ends it
     }
   }
   const LaneTag d;

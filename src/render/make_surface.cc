@@ -108,8 +108,8 @@ std::optional<FieldSource> find_drawn_only(const ParticleSet& particles,
   if (drawn_only.index.empty()) return std::nullopt;
   // A radius that fields have keeps theirs in one number, if it is; else the view is fitted by it.
   const float largest = *std::max_element(geometry.radius.begin(), geometry.radius.end());
-  const auto of_particles = std::find_if(sources.begin(), sources.end(),
-                                         [](const FieldSource& s) { return !s.grid; });
+  const auto of_particles =
+      std::find_if(sources.begin(), sources.end(), [](const FieldSource& s) { return !s.grid; });
   const bool any = of_particles != sources.end();
   drawn_only.radius = {any ? of_particles->radius[0] : 0.5F * largest};
   drawn_only.weight = {any ? of_particles->weight[0] : 1.0F};

@@ -49,6 +49,47 @@ HWY_INLINE DepthRanges<V> clip_rays(D d, const FrameContext& context, V origin_x
   return range;
 }
 
+/// Depths between which clip planes leave rays; near > far where they leave nothing.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE DepthRanges<V> find_kept(D d, const FrameContext& context, V origin_x, V origin_y,
+                                    V direction_x, V direction_y) {
+  const CameraAxes& axes = context.view.axes;
+  const Vector3d eye = context.view.eye - Point3d{};
+  DepthRanges<V> range{hn::Zero(d), hn::Set(d, std::numeric_limits<double>::max())};
+  for (const ClipPlane& plane : context.clip_planes) {
+    const V x = hn::Set(d, dot(plane.normal, axes.x)), y = hn::Set(d, dot(plane.normal, axes.y));
+    const V forward = hn::Set(d, dot(plane.normal, axes.forward));
+    const V before = hn::Set(d, plane.distance - dot(plane.normal, eye));
+    // Along a ray, depth times `slope` stays below `room`.
+    const V room = hn::NegMulAdd(origin_x, x, hn::NegMulAdd(origin_y, y, before));
+    const V slope = hn::MulAdd(direction_x, x, hn::MulAdd(direction_y, y, forward));
+    const V depth = hn::Div(room, slope);
+    const auto leaves = hn::Gt(slope, hn::Zero(d)), enters = hn::Lt(slope, hn::Zero(d));
+    range.far = hn::IfThenElse(leaves, hn::Min(range.far, depth), range.far);
+    range.near = hn::IfThenElse(enters, hn::Max(range.near, depth), range.near);
+    const auto beyond = hn::AndNot(hn::Or(leaves, enters), hn::Lt(room, hn::Zero(d)));
+    range.far = hn::IfThenElse(beyond, hn::Set(d, -1.0), range.far);
+  }
+  return range;
+}
+
+/// First and last samples of rays, and what is left of their steps: see RayState.
+template <class V>
+struct SampleRanges {
+  V first, last, enters, leaves;
+};
+
+/// Leaves no more of rays than lies between those depths, in steps.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE void cut_samples(D d, const DepthRanges<V>& kept, SampleRanges<V>& samples) {
+  const V first = hn::Floor(kept.near), last = hn::Sub(hn::Ceil(kept.far), hn::Set(d, 1.0));
+  samples.first = hn::Max(samples.first, first);
+  samples.last = hn::Min(samples.last, last);
+  samples.enters = hn::IfThenElseZero(hn::Eq(samples.first, first), hn::Sub(kept.near, first));
+  samples.leaves =
+      hn::IfThenElse(hn::Eq(samples.last, last), hn::Sub(kept.far, last), hn::Set(d, 1.0));
+}
+
 /// Sets `rays` to those of width x height pixels, whose top left one is (px, py), before their
 /// first sample: lanes row by row. Lanes outside the image have no samples.
 inline void start_rays(const FrameContext& context, int px, int py, int width, int height,
@@ -74,12 +115,23 @@ inline void start_rays(const FrameContext& context, int px, int py, int width, i
     const DepthRanges<V> range =
         clip_rays(d, context, hn::Load(d, packet.origin_x + i), hn::Load(d, packet.origin_y + i),
                   direction_x, direction_y);
-    const V first = hn::Ceil(hn::MulSub(range.near, inverse_step, half));
-    const V last = hn::Floor(hn::MulSub(range.far, inverse_step, half));
-    const auto any = hn::And(hn::And(hn::Le(range.near, range.far), hn::Le(first, last)),
-                             hn::Gt(hn::Load(d, in_image + i), hn::Zero(d)));
-    const V relative_first = hn::Sub(first, first_plane),
-            relative_last = hn::Sub(last, first_plane);
+    SampleRanges<V> samples{hn::Ceil(hn::MulSub(range.near, inverse_step, half)),
+                            hn::Floor(hn::MulSub(range.far, inverse_step, half)), hn::Zero(d),
+                            hn::Zero(d)};
+    auto any = hn::Le(range.near, range.far);
+    if (!context.clip_planes.empty()) {
+      const DepthRanges<V> kept =
+          find_kept(d, context, hn::Load(d, packet.origin_x + i), hn::Load(d, packet.origin_y + i),
+                    direction_x, direction_y);
+      any = hn::And(any, hn::Lt(kept.near, kept.far));
+      cut_samples(d, {hn::Mul(kept.near, inverse_step), hn::Mul(kept.far, inverse_step)}, samples);
+      store(samples.enters, rays.enters + i);
+      store(samples.leaves, rays.leaves + i);
+    }
+    any = hn::And(hn::And(any, hn::Le(samples.first, samples.last)),
+                  hn::Gt(hn::Load(d, in_image + i), hn::Zero(d)));
+    const V relative_first = hn::Sub(samples.first, first_plane),
+            relative_last = hn::Sub(samples.last, first_plane);
     begin = hn::Min(begin, hn::IfThenElse(any, relative_first, begin));
     end = hn::Max(end, hn::IfThenElse(any, relative_last, end));
     store(hn::IfThenElseZero(any, relative_first), rays.first + i);

@@ -45,7 +45,7 @@ struct SweepMemory {
   static constexpr int num_blocks = AreaBuffer::groups * AreaBuffer::groups * group_blocks;
   std::vector<RayState> blocks = std::vector<RayState>(num_blocks);  ///< as in AreaBuffer
   TileLayers layers;
-  std::vector<BlockLayers> block_layers;  ///< one a block, where there are layers at all
+  std::vector<BlockLayers> block_layers;  ///< one a block, if FrameContext::has_cuts()
   /// Of each block's rays, as in RayState.
   std::vector<SampleIndex> begin = std::vector<SampleIndex>(num_blocks), end = begin;
 };
@@ -114,14 +114,12 @@ class AreaSweep {
   void start() {
     begin_ = INT_MAX;
     end_ = -1;
-    if (context_.layers) {
-      context_.layers(area_, memory_.layers);
-      memory_.block_layers.resize(SweepMemory::num_blocks);
-    }
+    if (context_.layers) context_.layers(area_, memory_.layers);
+    if (context_.has_cuts()) memory_.block_layers.resize(SweepMemory::num_blocks);
     for_each_block([&](std::size_t b, int x, int y) {
       RayState& rays = memory_.blocks[b];
       start_rays(context_, x, y, AreaBuffer::group_size, block_rows, rays);
-      if (context_.layers) {
+      if (context_.has_cuts()) {
         take_layers(context_, memory_.layers, area_, x, y, AreaBuffer::group_size,
                     memory_.block_layers[b], rays);
       }
@@ -142,10 +140,11 @@ class AreaSweep {
     clock_.lap(Stage::setup);
   }
 
-  /// Null where surfaces are not in the way.
+  /// Null where nothing cuts the steps of rays.
   BlockLayers* layers_of(std::size_t block) {
-    if (!context_.layers || memory_.block_layers[block].most == 0) return nullptr;
-    return &memory_.block_layers[block];
+    if (!context_.has_cuts()) return nullptr;
+    BlockLayers& layers = memory_.block_layers[block];
+    return layers.most == 0 && context_.clip_planes.empty() ? nullptr : &layers;
   }
 
   /// Finds the groups that have rays under way on some of the planes, and where the last of all

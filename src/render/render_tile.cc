@@ -100,11 +100,11 @@ TileCounts render_packets(const FrameContext& context, const Tile& tile, Framebu
       const RayPacket packet = make_ray_packet(context, px, py, packet_width, packet_height);
       RayState rays;
       start_rays(context, px, py, packet_width, packet_height, rays);
-      const bool any_layers = context.layers && take_layers(context, layers, tile, px, py,
-                                                            packet_width, block_layers, rays);
+      const bool cuts = context.has_cuts() && take_layers(context, layers, tile, px, py,
+                                                          packet_width, block_layers, rays);
       clock.lap(Stage::setup);
       counts.kernel_evaluations += render_packet(context, constants, integrator, packet, buffer,
-                                                 any_layers ? &block_layers : nullptr, rays, clock);
+                                                 cuts ? &block_layers : nullptr, rays, clock);
       counts.samples += count_samples(rays);
       store_pixels(rays, px, py, packet_width, image);
     }

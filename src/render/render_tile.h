@@ -38,6 +38,10 @@ struct FrameContext {
   bool any_kernels = true;                   ///< else all fields are grids
   std::vector<FrameGrid> grids;              ///< of the fields those that are grids
   LayerSource layers;                        ///< of surfaces; empty: there are none
+  std::vector<ClipPlane> clip_planes;  ///< unit normals; internal lengths from kernels->origin
+
+  /// Whether rays' steps may be cut, by surfaces or clip planes.
+  bool has_cuts() const { return layers || !clip_planes.empty(); }
 };
 
 struct TileCounts {

@@ -30,6 +30,12 @@ Point3d to_internal(const KernelSet& kernels, const Point3d& p) {
   return {v.x, v.y, v.z};
 }
 
+ClipPlane to_internal(const KernelSet& kernels, const ClipPlane& plane) {
+  const Vector3d normal = normalize(plane.normal);
+  const double distance = plane.distance - dot(normal, kernels.origin - Point3d{});
+  return {normal, kernels.length_scale * distance};
+}
+
 /// half_height() in internal lengths where it is a length.
 double internal_half_height(const KernelSet& kernels, const Camera& camera) {
   return half_height(camera) * (camera.orthographic_height ? kernels.length_scale : 1);
@@ -107,8 +113,8 @@ FrameContext make_context(const KernelSet& kernels, const GridFields& grids,
         scene.transfer_functions[f], kernels.fields[f].value_scale, scene.step_size));
     context.absolute = context.absolute || kernels.fields[f].mixed_signs;
   }
-  context.grids = make_frame_grids(grids, kernels, context.view, scene.transfer_functions,
-                                   context.classifiers);
+  context.grids =
+      make_frame_grids(grids, kernels, context.view, scene.transfer_functions, context.classifiers);
   context.any_kernels = grids.size() < kernels.fields.size();
   context.shading = make_shading(scene, axes, kernels);
   context.shading.has_gaps = !grids.empty();
@@ -127,6 +133,10 @@ FrameContext make_context(const KernelSet& kernels, const GridFields& grids,
                                                              : 64 / num_fields;
   const int per_pass = options.samples_per_pass.value_or(default_planes);
   context.layers = options.layers;
+  for (const ClipPlane& plane : scene.render.clip_planes) {
+    context.clip_planes.push_back(to_internal(kernels, plane));
+  }
+  context.shading.clipped = !context.clip_planes.empty();
   context.samples_per_pass = per_pass == 0 ? max_single_pass : per_pass;
   return context;
 }
@@ -230,8 +240,8 @@ TreeUpdate Renderer::set_particles(const ParticleSet& particles,
   const Stopwatch stopwatch;
   cells_.reset();
   TreeUpdate update = TreeUpdate::refitted;
-  const bool any_grids = std::any_of(fields.begin(), fields.end(),
-                                     [](const FieldSource& field) { return field.grid != nullptr; });
+  const bool any_grids = std::any_of(
+      fields.begin(), fields.end(), [](const FieldSource& field) { return field.grid != nullptr; });
   if (!geometry.empty() || surface_ || any_grids || !grids_.empty() ||
       !refit_kernel_set(particles, fields, order_, *kernels_)) {
     update = TreeUpdate::rebuilt;

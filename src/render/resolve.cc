@@ -20,8 +20,8 @@ bool is_open(const Field& field) {
 
 ResolvedScene resolve(const Scene& scene, const ParticleSet& particles,
                       const std::vector<Field>& fields, const std::vector<FieldSource>& sources,
-                      const GeometrySource& geometry, const KernelSet& kernels,
-                      Progress* progress, const GridFields& grids) {
+                      const GeometrySource& geometry, const KernelSet& kernels, Progress* progress,
+                      const GridFields& grids) {
   ResolvedScene resolved;
   resolved.render = scene.render;
   const double aspect = static_cast<double>(scene.render.width) / scene.render.height;

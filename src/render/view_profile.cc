@@ -34,8 +34,8 @@ struct ViewPoints {
 
 /// `rays_an_axis` squared rays over the image, `samples_per_ray` points on each. Both are jittered,
 /// or a crystal's planes would beat with them.
-ViewPoints spread_points(const Bounds3d& box, const Camera& camera, double aspect,
-                         int rays_an_axis, int samples_per_ray) {
+ViewPoints spread_points(const Bounds3d& box, const Camera& camera, double aspect, int rays_an_axis,
+                         int samples_per_ray) {
   const CameraAxes axes = camera_axes(camera);
   std::mt19937 random(1);
   const auto jitter = [&] { return (random() + 0.5) / 4294967296.0; };
@@ -68,8 +68,7 @@ ViewPoints choose_points(const KernelSet& kernels, const Bounds3d& box, const Ca
   const double cost =
       mean_kernels_tested(kernels, trial.points) * rays_an_axis * rays_an_axis * samples_per_ray;
   const double scale = std::min(1.0, std::cbrt(max_kernels / std::max(cost, 1.0)));
-  return spread_points(box, camera, aspect,
-                       std::max(few, static_cast<int>(scale * rays_an_axis)),
+  return spread_points(box, camera, aspect, std::max(few, static_cast<int>(scale * rays_an_axis)),
                        std::max(few, static_cast<int>(scale * samples_per_ray)));
 }
 

@@ -53,7 +53,10 @@ struct RayState {
   /// Samples inside the volume's box, both included; first > last: none. A ray that ends early has
   /// its last sample moved up. Whole numbers, exact in float: a frame has at most 1e7 planes.
   alignas(64) float first[max_lanes], last[max_lanes];
-  SampleIndex begin = 0, end = -1;              ///< of all lanes; begin > end: none
+  SampleIndex begin = 0, end = -1;  ///< of all lanes; begin > end: none
+  /// What clip planes leave of the first and the last sample's step: from `enters` on and up to
+  /// `leaves`, 0 to 1. Set, and looked at, only where there are such planes.
+  alignas(64) float enters[max_lanes], leaves[max_lanes];
   alignas(64) float length[max_lanes];          ///< of the direction
   alignas(64) float half_to_eye[3][max_lanes];  ///< half of the unit vector to the eye
   alignas(64) float r[max_lanes], g[max_lanes], b[max_lanes], a[max_lanes];

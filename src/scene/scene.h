@@ -19,6 +19,7 @@
 #include "particles/grid.h"
 #include "particles/particle_set.h"
 #include "scene/camera.h"
+#include "scene/clip_plane.h"
 #include "scene/geometry.h"
 #include "scene/kernel.h"
 #include "scene/selection.h"
@@ -44,6 +45,7 @@ struct NamedTransferFunction {
 
 /// More than this no engine takes.
 inline constexpr std::size_t max_fields = 64;
+inline constexpr std::size_t max_clip_planes = 16;
 
 /// What a field is that is a grid.
 struct FieldGrid {
@@ -102,6 +104,7 @@ struct RenderSettings {
   double termination_opacity = 0.97;
   Lighting lighting;
   SurfaceSettings surface;
+  std::vector<ClipPlane> clip_planes;  ///< of the data what none of them cuts away is drawn
   Color background;
   Engine engine = Engine::sweep;
   bool operator==(const RenderSettings&) const = default;
@@ -133,7 +136,7 @@ struct LoadedGrid {
 /// them. Or the field's grid, and no particles.
 struct FieldSource {
   std::string name;
-  std::shared_ptr<const Grid> grid;  ///< null: a field of particles
+  std::shared_ptr<const Grid> grid;                          ///< null: a field of particles
   Reconstruction interpolation = Reconstruction::trilinear;  ///< of the grid
   Kernel kernel;
   bool normalise = false;

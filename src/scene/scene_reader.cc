@@ -12,6 +12,7 @@
 #include "scene/checked_json.h"
 #include "scene/geometry_json.h"
 #include "scene/scene.h"
+#include "scene/style.h"
 
 namespace motes {
 namespace {
@@ -289,9 +290,26 @@ Lighting read_lighting(const Value& value) {
   return lighting;
 }
 
+std::vector<ClipPlane> read_clip_planes(const Value& value) {
+  const auto items = value.array("an array of planes");
+  if (items.size() > max_clip_planes) {
+    value.expected(fmt::format("an array of at most {} planes", max_clip_planes));
+  }
+  std::vector<ClipPlane> planes;
+  for (const Value& item : items) {
+    item.check_keys({"normal", "distance"});
+    ClipPlane& plane = planes.emplace_back();
+    const Value normal = item.at("normal");
+    plane.normal = normal.vector();
+    if (!(length(plane.normal) > 0)) normal.fail("a direction must not be zero");
+    item.with("distance", [&](const Value& v) { plane.distance = v.number(); });
+  }
+  return planes;
+}
+
 void read_render(const Value& value, RenderSettings& render) {
-  value.check_keys(
-      {"size", "step_size", "termination_opacity", "lighting", "surface", "background", "engine"});
+  value.check_keys({"size", "step_size", "termination_opacity", "lighting", "surface",
+                    "clip_planes", "background", "engine"});
   value.with("size", [&](const Value& v) {
     const auto sides = v.array_of(2, "an array of two whole numbers, width and height");
     render.width = static_cast<int>(sides[0].integer(1, max_image_side));
@@ -306,6 +324,7 @@ void read_render(const Value& value, RenderSettings& render) {
   });
   value.with("lighting", [&](const Value& v) { render.lighting = read_lighting(v); });
   value.with("surface", [&](const Value& v) { render.surface = read_surface_settings(v); });
+  value.with("clip_planes", [&](const Value& v) { render.clip_planes = read_clip_planes(v); });
   value.with("background", [&](const Value& v) {
     const Color color = render.background = v.color();
     if (std::max({color.r, color.g, color.b}) > 1) {
@@ -341,9 +360,26 @@ void check_data_path(const Value& root, const Scene& scene) {
   if (needs_data && scene.data_path.empty()) root.at("data").at("path");
 }
 
+/// After fields and geometry.
+void read_style(const Value& value, Scene& scene) {
+  const std::string name = value.text("the name of a style");
+  if (!scene.geometry.empty()) value.fail("expected either a style or geometry, found both");
+  bool draws_fields = false;
+  try {
+    draws_fields = style_draws_fields(name);
+  } catch (const Error& error) {
+    value.fail(error.what());
+  }
+  if (!scene.fields.empty() && !draws_fields) {
+    value.fail(fmt::format("expected no fields with the style '{}', which draws none", name));
+  }
+  apply_style(name, scene);
+}
+
 Scene read_root(const json& root, const std::filesystem::path& directory) {
   const Value value(root, "");
-  value.check_keys({"version", "data", "camera", "kernel", "fields", "geometry", "render"});
+  value.check_keys(
+      {"version", "data", "camera", "kernel", "fields", "geometry", "style", "render"});
   const Value version = value.at("version");
   if (version.raw() != json(1)) version.expected("1, the only version there is");
   Scene scene;
@@ -360,6 +396,7 @@ Scene read_root(const json& root, const std::filesystem::path& directory) {
     check_support_factors(v, scene);
   });
   value.with("geometry", [&](const Value& v) { scene.geometry = read_geometry(v); });
+  value.with("style", [&](const Value& v) { read_style(v, scene); });
   value.with("render", [&](const Value& v) { read_render(v, scene.render); });
   check_data_path(value, scene);
   return scene;

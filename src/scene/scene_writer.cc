@@ -97,6 +97,11 @@ json to_json(const RenderSettings& render) {
     out["lighting"]["direction"] = vector_to_json(d->x, d->y, d->z);
   }
   if (render.surface != SurfaceSettings{}) out["surface"] = to_json(render.surface);
+  for (const ClipPlane& plane : render.clip_planes) {
+    const Vector3d& n = plane.normal;
+    out["clip_planes"].push_back(
+        {{"normal", vector_to_json(n.x, n.y, n.z)}, {"distance", plane.distance}});
+  }
   out["background"] = color_to_json(render.background);
   out["engine"] = name_of(render.engine);
   return out;

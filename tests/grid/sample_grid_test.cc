@@ -5,10 +5,10 @@
 #include <limits>
 #include <utility>
 
-#include "grid/field_truth.h"
 #include "grid/grids.h"
 #include "grid/instruction_sets.h"
 #include "grid/sample_points.h"
+#include "reference/grid.h"
 
 namespace motes {
 namespace {
@@ -30,7 +30,7 @@ TEST_P(HotPath, IsTheTruth) {
     const Grid grid = random_grid(GetParam(), periodic, 3);
     for (const Reconstruction reconstruction : all_reconstructions) {
       const GridSampler sampler(grid, reconstruction);
-      const FieldTruth truth(grid, reconstruction);
+      const reference::GridField truth(grid, reconstruction);
       PointSamples points = as_floats(hull_points(sampler, 333, 5));
       std::vector<std::array<double, 4>> expected;
       for (std::size_t n = 0; n < points.x.size(); ++n) {

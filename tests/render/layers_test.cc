@@ -14,6 +14,18 @@ namespace {
 
 using PixelLayers = std::vector<std::vector<reference::Layer>>;
 
+/// Whether a pixel's ray is behind some clip plane at that depth.
+bool cut_away(const ResolvedScene& scene, int pixel, double depth) {
+  const int width = scene.render.width;
+  const reference::CameraRay ray =
+      reference::camera_ray(scene.camera, width, scene.render.height, pixel % width, pixel / width);
+  const Vector3d x = ray.origin + depth * ray.direction - Point3d{};
+  return std::any_of(scene.render.clip_planes.begin(), scene.render.clip_planes.end(),
+                     [&](const ClipPlane& plane) {
+                       return dot(plane.normal, x) > plane.distance * length(plane.normal);
+                     });
+}
+
 /// Up to four layers a pixel, anywhere along the rays through the data, some in one place.
 PixelLayers random_layers(const ResolvedScene& scene, const Bounds3d& box, std::uint32_t seed) {
   std::mt19937 random(seed);
@@ -33,6 +45,10 @@ PixelLayers random_layers(const ResolvedScene& scene, const Bounds3d& box, std::
                           .blue = static_cast<float>(uniform())});
     }
     if (count > 1 && uniform() < 0.2) of_pixel[1].depth = of_pixel[0].depth;
+    // Nothing is where clip planes cut it away.
+    std::erase_if(of_pixel, [&](const reference::Layer& layer) {
+      return cut_away(scene, static_cast<int>(&of_pixel - layers.data()), layer.depth);
+    });
     std::stable_sort(of_pixel.begin(), of_pixel.end(),
                      [](const auto& a, const auto& b) { return a.depth < b.depth; });
   }
@@ -60,12 +76,14 @@ LayerSource source_of(const PixelLayers& layers, int width, double length_scale)
 
 class Layers : public testing::TestWithParam<int> {};
 
-TEST_P(Layers, CutTheSamplesOfEveryEngine) {
+/// Scenes of 12 seeds.
+void check_layers(int block, RandomScene (*draw_scene)(std::uint32_t)) {
   for (int i = 0; i < 12; ++i) {
-    const auto seed = static_cast<std::uint32_t>(12 * GetParam() + i);
-    const RandomScene random = random_scene(seed);
+    const auto seed = static_cast<std::uint32_t>(12 * block + i);
+    const RandomScene random = draw_scene(seed);
     const Renderer renderer(random.particles, random.scene.fields);
-    const PixelLayers layers = random_layers(random.scene, renderer.kernels().box(), seed);
+    const Bounds3d box = volume_box(renderer.kernels(), renderer.grids());
+    const PixelLayers layers = random_layers(random.scene, box, seed);
     const reference::Image truth = reference::render(random.particles, random.scene, layers);
     const Framebuffer expected = to_framebuffer(truth);
     const LayerSource source =
@@ -80,6 +98,10 @@ TEST_P(Layers, CutTheSamplesOfEveryEngine) {
     }
   }
 }
+
+TEST_P(Layers, CutTheSamplesOfEveryEngine) { check_layers(GetParam(), random_scene); }
+
+TEST_P(Layers, CutTheSamplesOfGrids) { check_layers(GetParam(), random_grid_scene); }
 
 INSTANTIATE_TEST_SUITE_P(Blocks, Layers, testing::Range(0, 6));
 
