@@ -34,12 +34,12 @@ constexpr double voxel_sizes[] = {1, 0.5, 0.25};
 /// field's.
 struct Row {
   std::string name;
-  std::optional<double> voxel_size;
+  std::optional<double> voxel_size = {};
   std::size_t bytes = 0;  ///< that the picture is made of
   double resample_ms = 0, build_ms = 0, frame_ms = 0;
   double rms = 0, max = 0;  ///< of linear channels
-  std::optional<double> signal_to_noise;
-  std::string picture;
+  std::optional<double> signal_to_noise = {};
+  std::string picture = {};
 };
 
 /// The piece of the fracture around the crack's tip.
