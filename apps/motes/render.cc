@@ -39,9 +39,11 @@ Examples:
   motes render run.xyz.gz -o frame7.png --frame 7 --eye 0,0,-80 --target 0,0,0 --fov 30
   motes render scene.json -o picture.exr --stats stats.json --repeat 5
   motes render silica.lammpstrj -o silica.png --save-scene silica.json
+  motes render density.cube -o density.png --interpolation tricubic
 
 Reads LAMMPS dumps and data, XYZ, PDB, mmCIF, CIF, GRO, HDF5 of GADGET, AREPO, SWIFT, GIZMO and
-Phantom, H5MD, CSV and NPY, also compressed with gz, bz2, xz or zst.
+Phantom, H5MD, CSV and NPY, and grids of NRRD, VTI, Gaussian cube and CHGCAR, also compressed with
+gz, bz2, xz or zst.
 MOTES_TARGET=SSE4, AVX2 or AVX-512 in the environment forces an instruction set.)";
 
 struct Options {
@@ -169,7 +171,7 @@ std::string check_suffix(const std::string& path) {
 void add_render_command(CLI::App& program) {
   CLI::App* command = program.add_subcommand("render", "Make a picture of particles.");
   const auto options = std::make_shared<Options>();
-  command->add_option("FILE", options->path, "particles, or a scene")->required()->type_name("");
+  command->add_option("FILE", options->path, "particles, grids, or a scene")->required()->type_name("");
   command->add_option("-o,--output", options->output, "picture: .png, .jpg, .exr or .npy")
       ->required()
       ->type_name("OUT")

@@ -20,6 +20,7 @@
 #include "render/render_tile.h"
 #include "render/surface_layers.h"
 #include "samples/area_buffer.h"
+#include "surface/cut.h"
 
 namespace motes {
 namespace {
@@ -34,6 +35,14 @@ ClipPlane to_internal(const KernelSet& kernels, const ClipPlane& plane) {
   const Vector3d normal = normalize(plane.normal);
   const double distance = plane.distance - dot(normal, kernels.origin - Point3d{});
   return {normal, kernels.length_scale * distance};
+}
+
+std::vector<ClipPlane> clip_planes_of(const ResolvedScene& scene, const KernelSet& kernels) {
+  std::vector<ClipPlane> planes;
+  for (const ClipPlane& plane : scene.render.clip_planes) {
+    planes.push_back(to_internal(kernels, plane));
+  }
+  return planes;
 }
 
 /// half_height() in internal lengths where it is a length.
@@ -133,9 +142,7 @@ FrameContext make_context(const KernelSet& kernels, const GridFields& grids,
                                                              : 64 / num_fields;
   const int per_pass = options.samples_per_pass.value_or(default_planes);
   context.layers = options.layers;
-  for (const ClipPlane& plane : scene.render.clip_planes) {
-    context.clip_planes.push_back(to_internal(kernels, plane));
-  }
+  context.clip_planes = clip_planes_of(scene, kernels);
   context.shading.clipped = !context.clip_planes.empty();
   context.samples_per_pass = per_pass == 0 ? max_single_pass : per_pass;
   return context;
@@ -281,8 +288,12 @@ void Renderer::render(const ResolvedScene& scene, const RenderOptions& options, 
   }
   const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
   TileCounts all;
+  std::optional<Surface> cut_surface;
+  if (surface_ && !scene.render.clip_planes.empty()) {
+    cut_surface = cut(*surface_, clip_planes_of(scene, *kernels_));
+  }
   std::optional<SurfaceFrame> surface;
-  if (surface_) surface = frame_of(*surface_, scene);
+  if (surface_) surface = frame_of(cut_surface ? *cut_surface : *surface_, scene);
   if (kernels_->fields.empty() || (kernels_->size() == 0 && grids_.empty())) {
     std::fill(image.rgba.begin(), image.rgba.end(), 0.0f);
     if (surface) {

@@ -52,6 +52,27 @@ TEST(DrawnOnly, ParticlesAddNothingToTheFields) {
   }
 }
 
+TEST(Geometry, IsCutByClipPlanes) {
+  PlainScene s = plain_scene(some_points(), 16);
+  s.scene.render.clip_planes = {{{2, 1, -1}, 1.1}, {{0, 0, 1}, 1.5}};
+  std::vector<std::uint32_t> all, left;
+  for (std::uint32_t i = 0; i < s.particles.size(); ++i) {
+    all.push_back(i);
+    const Vector3d x = s.particles.position(i) - Point3d{};
+    if (dot({2, 1, -1}, x) <= 1.1 * std::sqrt(6) && x.z <= 1.5) left.push_back(i);
+  }
+  ASSERT_GT(left.size(), 10u);
+  ASSERT_LT(left.size(), 50u);
+  const auto render_balls = [&](const std::vector<std::uint32_t>& index) {
+    return Renderer(s.particles, {}, balls(index, 0.7F)).render(s.scene, {});
+  };
+  s.scene.transfer_functions.clear();
+  const Framebuffer cut = render_balls(all);
+  s.scene.render.clip_planes.clear();
+  EXPECT_EQ(cut.rgba, render_balls(left).rgba);
+  EXPECT_NE(cut.rgba, render_balls(all).rgba);
+}
+
 /// A ball in front of a lone kernel, and one behind it.
 TEST(Geometry, CutsTheVolumeWhereRaysMeetIt) {
   PlainScene s = plain_scene({{0, 0, 0}, {0, 0, 3}, {0.3, 0, -3}}, 16);
