@@ -9,9 +9,6 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <string_view>
-#include <system_error>
-#include <utility>
 #include <vector>
 
 #include "core/atomic_file.h"
@@ -21,6 +18,7 @@
 #include "motes/count_option.h"
 #include "motes/frame_times.h"
 #include "motes/input.h"
+#include "motes/named_files.h"
 #include "motes/picture_warnings.h"
 #include "motes/prepare.h"
 #include "motes/scene_options.h"
@@ -97,30 +95,6 @@ Framebuffer render_frames(const Renderer& renderer, const ResolvedScene& scene,
   }
   console.finish();
   return image;
-}
-
-/// Options and the files that they name; a file may be "", none.
-using NamedFiles = std::vector<std::pair<std::string_view, std::filesystem::path>>;
-
-/// One name for all paths to a file; what cannot be looked at stays as it is.
-std::filesystem::path canonical_name(const std::filesystem::path& path) {
-  std::error_code error;
-  const std::filesystem::path canonical = weakly_canonical(path, error);
-  return error ? path : canonical;
-}
-
-/// No two outputs may be one file, and none may be the input.
-void refuse_same_file(const NamedFiles& outputs, const NamedFiles::value_type& input) {
-  for (auto second = outputs.begin(); second != outputs.end(); ++second) {
-    if (second->second.empty()) continue;
-    const auto refuse = [&](const NamedFiles::value_type& first) {
-      if (canonical_name(first.second) != canonical_name(second->second)) return;
-      throw Error(first.second, fmt::format("is both {} and {}; expected two different files",
-                                            first.first, second->first));
-    };
-    refuse(input);
-    std::for_each(outputs.begin(), second, refuse);
-  }
 }
 
 void run(const Options& options) {

@@ -10,6 +10,7 @@
 // Included again for each instruction set.
 #include <hwy/highway.h>
 
+#include "core/flush_tiny.h"
 #include "field/cells-inl.h"
 #include "field/coherent-inl.h"
 #include "field/direct-inl.h"
@@ -25,22 +26,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace motes {
 namespace HWY_NAMESPACE {
-
-/// While it lives, this thread takes numbers below 1e-38 for zero: far from a kernel's centre its
-/// factors are so small, and arithmetic with them takes the processor many times as long.
-class FlushTinyToZero {
- public:
-  FlushTinyToZero() : saved_(_mm_getcsr()) {
-    constexpr unsigned flush_to_zero = 0x8000, denormals_are_zero = 0x0040;
-    _mm_setcsr(saved_ | flush_to_zero | denormals_are_zero);
-  }
-  ~FlushTinyToZero() { _mm_setcsr(saved_); }
-  FlushTinyToZero(const FlushTinyToZero&) = delete;
-  FlushTinyToZero& operator=(const FlushTinyToZero&) = delete;
-
- private:
-  unsigned saved_;
-};
 
 /// Pass 1 for one slab, by the engine and with the channels of the frame.
 std::uint64_t sample_field(const FrameContext& context, const SamplingConstants& constants,

@@ -3,27 +3,15 @@
 
 #include <array>
 #include <limits>
-#include <string>
 #include <utility>
 
 #include "grid/grids.h"
+#include "grid/instruction_sets.h"
 #include "grid/sample_points.h"
 #include "reference/grid.h"
-#include "render/render_tile.h"
 
 namespace motes {
 namespace {
-
-/// Runs `f` on every instruction set that this machine has.
-template <class F>
-void on_all_instruction_sets(F&& f) {
-  for (const std::string& name : instruction_sets()) {
-    SCOPED_TRACE(name);
-    force_instruction_set(name);
-    f();
-  }
-  force_instruction_set("");
-}
 
 PointSamples as_floats(const std::vector<std::array<double, 3>>& points) {
   PointSamples out;
