@@ -59,6 +59,7 @@ Scene fill_in(const Scene& scene, const std::vector<Field>& fields,
     // Weights that differ and that nobody gave are masses.
     if (!field.weight) field.weight = plain_number(source.weight).value_or(std::string("mass"));
     field.normalise = source.normalise;
+    if (!field.draws_volume()) continue;
     field.transfer_function = written_form(field.transfer_function, resolved.transfer_functions[f]);
   }
   return filled;

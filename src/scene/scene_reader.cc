@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "scene/checked_json.h"
 #include "scene/geometry_json.h"
+#include "scene/isosurface_json.h"
 #include "scene/scene.h"
 
 namespace motes {
@@ -157,8 +158,8 @@ KernelChoice read_kernel(const Value& value, const std::filesystem::path& direct
 }
 
 Field read_field(const Value& value, const std::filesystem::path& directory) {
-  value.check_keys(
-      {"name", "select", "radius", "weight", "normalise", "kernel", "transfer_function"});
+  value.check_keys({"name", "select", "radius", "weight", "normalise", "kernel",
+                    "transfer_function", "isosurfaces"});
   Field field;
   value.with("name", [&](const Value& v) { field.name = v.text("a name"); });
   value.with("select", [&](const Value& v) { field.select = read_selection(v); });
@@ -173,6 +174,7 @@ Field read_field(const Value& value, const std::filesystem::path& directory) {
   });
   value.with("transfer_function",
              [&](const Value& v) { field.transfer_function = read_transfer_function(v); });
+  value.with("isosurfaces", [&](const Value& v) { field.isosurfaces = read_isosurfaces(v); });
   return field;
 }
 

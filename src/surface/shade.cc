@@ -1,46 +1,15 @@
 #include "surface/shade.h"
 
-#include <algorithm>
-#include <cmath>
 #include <span>
 
 #include "surface/directions.h"
+#include "surface/phong.h"
 #include "surface/spots.h"
 
 namespace motes {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-
-/// v with length 1; without std::hypot()'s care for lengths that no vector has here.
-Vector3d unit(const Vector3d& v) { return v / std::sqrt(dot(v, v)); }
-
-/// s c + plus
-Color scaled(const Color& c, double s, double plus) {
-  const auto channel = [&](float x) {
-    return static_cast<float>(s * static_cast<double>(x) + plus);
-  };
-  return {channel(c.r), channel(c.g), channel(c.b)};
-}
-
-/// Phong's model (docs/surface.md). `view`: unit vector from the surface to the eye; the lighting's
-/// direction, if there is one, is a unit vector.
-Color phong(const Lighting& lighting, const Color& base, const Vector3d& normal,
-            const Vector3d& view, const Light& light) {
-  const double sky = static_cast<double>(light.sky);
-  if (!lighting.enabled) return scaled(base, sky, 0);
-  const Vector3d lamp = lighting.direction.value_or(view);
-  // What a headlight does not reach would lie behind what is seen: the open sky stands for it.
-  const double lit = lighting.direction ? static_cast<double>(light.lamp) : sky;
-  const double cosine = dot(normal, lamp);
-  if (!(cosine > 0) || lit == 0) return scaled(base, lighting.ambient * sky, 0);
-  const double mirrored =
-      lighting.direction ? std::max(dot(normal, unit(lamp + view)), 0.0) : cosine;
-  const float gloss =
-      std::pow(static_cast<float>(mirrored), static_cast<float>(lighting.shininess));
-  return scaled(base, lighting.ambient * sky + lit * lighting.diffuse * cosine,
-                lit * lighting.specular * static_cast<double>(gloss));
-}
 
 /// One tile on its way.
 class TileShader {
@@ -53,7 +22,8 @@ class TileShader {
         tile_(tile) {}
 
   void run(SurfaceSamples& out) {
-    make_grid();
+    // With a margin over which light is evened out.
+    grid_ = rays_of(frame_.plane, tile_, margin_);
     trace(*frame_.surface, frame_.view, grid_, hits_);
     if (has_spots()) light_spots();
     const auto rays_per_pixel = static_cast<std::size_t>(n_) * static_cast<std::size_t>(n_);
@@ -70,19 +40,6 @@ class TileShader {
   bool has_shadows() const { return shading_.shadows && shading_.lighting.direction.has_value(); }
   bool has_soft_shadows() const { return has_shadows() && shading_.light_radius > 0; }
   bool has_spots() const { return shading_.occlusion_samples > 0 || has_soft_shadows(); }
-
-  /// The rays of the tile and of a margin around it, over which light is evened out.
-  void make_grid() {
-    const ImagePlane& plane = frame_.plane;
-    grid_.du = 2 * plane.half_width / (plane.width * n_);
-    grid_.dv = -2 * plane.half_height / (plane.height * n_);
-    grid_.u = 0.5 * grid_.du - plane.half_width;
-    grid_.v = 0.5 * grid_.dv + plane.half_height;
-    grid_.column = n_ * (tile_.x - margin_);
-    grid_.row = n_ * (tile_.y - margin_);
-    grid_.width = n_ * (tile_.width + 2 * margin_);
-    grid_.height = n_ * (tile_.height + 2 * margin_);
-  }
 
   /// A ray of the grid, and what it hits.
   struct Ray {
@@ -194,6 +151,20 @@ class TileShader {
 };
 
 }  // namespace
+
+RayGrid rays_of(const ImagePlane& plane, const Tile& tile, int margin) {
+  const int n = plane.samples;
+  RayGrid grid;
+  grid.du = 2 * plane.half_width / (plane.width * n);
+  grid.dv = -2 * plane.half_height / (plane.height * n);
+  grid.u = 0.5 * grid.du - plane.half_width;
+  grid.v = 0.5 * grid.dv + plane.half_height;
+  grid.column = n * (tile.x - margin);
+  grid.row = n * (tile.y - margin);
+  grid.width = n * (tile.width + 2 * margin);
+  grid.height = n * (tile.height + 2 * margin);
+  return grid;
+}
 
 SurfaceFrame make_surface_frame(const Surface& surface, const SurfaceView& view,
                                 const ImagePlane& plane, const SurfaceShading& shading) {

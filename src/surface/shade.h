@@ -26,6 +26,9 @@ struct ImagePlane {
   int samples = 1;                         ///< n
 };
 
+/// The rays of a tile's pixels and of `margin` more on each side.
+RayGrid rays_of(const ImagePlane& plane, const Tile& tile, int margin);
+
 /// The light, and what it reaches (docs/surface.md).
 struct SurfaceShading {
   Lighting lighting;
