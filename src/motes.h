@@ -6,6 +6,8 @@
 #include "core/vec.h"
 #include "field/probe.h"
 #include "grid/grid_sampler.h"
+#include "grid/lattice.h"
+#include "grid/resample.h"
 #include "grid/write_grid.h"
 #include "image/framebuffer.h"
 #include "image/write_image.h"

@@ -11,5 +11,6 @@ void add_bench_command(CLI::App& program);
 void add_info_command(CLI::App& program);
 void add_probe_command(CLI::App& program);
 void add_render_command(CLI::App& program);
+void add_resample_command(CLI::App& program);
 
 }  // namespace motes

@@ -1,8 +1,9 @@
-// FILE or SCENE.json of the command line -> scene and particles.
+// FILE or SCENE.json of the command line -> scene, particles and grids.
 #pragma once
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "core/error.h"
 #include "motes/console.h"
@@ -12,17 +13,20 @@
 
 namespace motes {
 
-/// The scene in `path` if it is a scene file, else a scene of the particles in `path`, all
-/// defaults.
+/// The scene in `path` if it is a scene file, else a scene of the particles or grids in `path`, all
+/// defaults: grids as fields, with balls and sticks if the file has atoms too.
 Scene open_scene(const std::filesystem::path& path);
 
 struct Input {
   std::string format;
   ParticleSet particles;
+  std::vector<LoadedGrid> grids;
   double read_ms = 0;
 };
 
-/// Reads the scene's frame of its data.
+/// Reads the scene's frame of its particles, if it shows any, and the grids of its fields.
+Input read_input(const Scene& scene, Console& console);
+/// The particles alone.
 Input read_particles(const Scene& scene, Console& console);
 
 /// Throws `message`, a mistake that shows only in the data and knows at most the scene's key, as in

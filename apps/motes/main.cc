@@ -22,6 +22,7 @@ constexpr const char* examples = R"(Examples:
   motes render snapshot_042.hdf5 -o box.png --transfer-function magma
   motes info silica.lammpstrj
   motes probe silica.lammpstrj --points points.csv -o values.csv
+  motes resample silica.lammpstrj -o silica.vti --voxel-size 0.5
   motes bench table2 --scenes zeolite,nanobowl
 
 'motes COMMAND --help' tells more about each. A scene file (docs/scene.md) may stand
@@ -138,6 +139,7 @@ int run(int argc, char** argv) {
   motes::add_info_command(program);
   motes::add_probe_command(program);
   motes::add_render_command(program);
+  motes::add_resample_command(program);
   motes::add_bench_command(program);
   try {
     program.parse(argc, argv);  // runs the subcommand

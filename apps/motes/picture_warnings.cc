@@ -11,8 +11,10 @@ namespace {
 
 constexpr float least_visible = 1.0f / 255;
 
-/// Whether a sphere about each kernel's centre, as large as its support, reaches into the view.
-bool any_in_view(const KernelSet& kernels, const Camera& camera, double aspect) {
+/// Whether a sphere about each kernel's centre, as large as its support, reaches into the view, or
+/// one about a grid.
+bool any_in_view(const Renderer& renderer, const Camera& camera, double aspect) {
+  const KernelSet& kernels = renderer.kernels();
   const CameraAxes axes = camera_axes(camera);
   const bool parallel = camera.orthographic_height.has_value();
   const double tan_y = half_height(camera);
@@ -21,26 +23,32 @@ bool any_in_view(const KernelSet& kernels, const Camera& camera, double aspect) 
     if (parallel) return std::abs(across) - radius <= tangent;
     return std::abs(across) - radius * std::sqrt(1 + tangent * tangent) <= tangent * depth;
   };
+  const auto reaches_view = [&](const Point3d& center, double radius) {
+    const Vector3d v = center - camera.eye;
+    const double depth = dot(v, axes.forward);
+    return depth + radius > 0 && inside(dot(v, axes.x), depth, radius, tan_y * aspect) &&
+           inside(dot(v, axes.y), depth, radius, tan_y);
+  };
+  for (const GridField& grid : renderer.grids()) {
+    const Bounds3d box = grid.sampler->bounds();
+    if (reaches_view(box.center(), 0.5 * length(box.diagonal()))) return true;
+  }
   for (std::size_t i = 0; i < kernels.size(); ++i) {
     const std::size_t field = kernels.field_of(i);
     if (field == kernels.fields.size()) return true;  // drawn: it is up to the surfaces
     const double radius =
         kernels.fields[field].kernel.support() * kernels.radius[i] / kernels.length_scale;
     const Vector3d from_origin{kernels.x[i], kernels.y[i], kernels.z[i]};
-    const Vector3d v = kernels.origin + from_origin / kernels.length_scale - camera.eye;
-    const double depth = dot(v, axes.forward);
-    if (depth + radius > 0 && inside(dot(v, axes.x), depth, radius, tan_y * aspect) &&
-        inside(dot(v, axes.y), depth, radius, tan_y)) {
-      return true;
-    }
+    if (reaches_view(kernels.origin + from_origin / kernels.length_scale, radius)) return true;
   }
   return false;
 }
 
 }  // namespace
 
-bool warn_of_large_steps(const KernelSet& kernels, double step_size, Warnings& warnings) {
-  if (kernels.fields.empty()) return false;
+bool warn_of_large_steps(const Renderer& renderer, double step_size, Warnings& warnings) {
+  const KernelSet& kernels = renderer.kernels();
+  if (kernels.fields.size() == renderer.grids().size()) return false;
   double radius = 0, support_radius = 0;
   for (const FieldKernels& field : kernels.fields) {
     radius = std::max(radius, field.max_radius);
@@ -54,20 +62,20 @@ bool warn_of_large_steps(const KernelSet& kernels, double step_size, Warnings& w
   return true;
 }
 
-void warn_of_empty_picture(const Framebuffer& image, const KernelSet& kernels, const Camera& camera,
+void warn_of_empty_picture(const Framebuffer& image, const Renderer& renderer, const Camera& camera,
                            const DataExtent& data, bool between_samples, Warnings& warnings) {
   float largest = 0;
   for (std::size_t i = 3; i < image.rgba.size(); i += 4) {
     largest = std::max(largest, image.rgba[i]);
   }
   if (largest >= least_visible) return;
-  if (any_in_view(kernels, camera, static_cast<double>(image.width) / image.height)) {
+  if (any_in_view(renderer, camera, static_cast<double>(image.width) / image.height)) {
     if (between_samples) return;
     warnings.add(
-        fmt::format("the particles in view are too transparent to be seen (largest opacity "
+        fmt::format("the {} in view are too transparent to be seen (largest opacity "
                     "{:.2g}); expected a larger extinction in the transfer function, or a range "
                     "with the field's values in it",
-                    largest));
+                    renderer.grids().empty() ? "particles" : "fields", largest));
     return;
   }
   warnings.add(fmt::format(

@@ -21,11 +21,12 @@ struct PreparedScene {
 };
 
 /// Gathers the scene's fields of `particles`, builds the tree and fits what the scene leaves open;
-/// `particles` are not needed afterwards. `path` is the file that messages name (with_place()).
+/// `particles` and `grids` are not needed afterwards. `path` is the file that messages name
+/// (with_place()).
 PreparedScene prepare_scene(Scene scene, const ParticleSet& particles,
                             const std::filesystem::path& path, const SceneChanges& changes,
-                            Console& console);
-/// The same with the particles of the scene's file; they are gone when this returns.
+                            Console& console, const std::vector<LoadedGrid>& grids = {});
+/// The same with the particles and grids of the scene's files; they are gone when this returns.
 PreparedScene read_and_prepare_scene(const Scene& scene, const std::filesystem::path& path,
                                      const SceneChanges& changes, Console& console);
 

@@ -4,16 +4,17 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <iterator>
+#include <limits>
 #include <memory>
 #include <optional>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
-#include "field/probe.h"
 #include "motes/commands.h"
 #include "motes/input.h"
 #include "motes/points.h"
 #include "motes/scene_options.h"
+#include "render/grid_fields.h"
 
 namespace motes {
 namespace {
@@ -73,14 +74,17 @@ void run(const Options& options) {
 
   Scene scene = open_scene(options.path);
   options.changes.apply(scene);
-  const Input input = read_particles(scene, console);
+  const Input input = read_input(scene, console);
   const auto fields = with_place(options.path, options.changes, [&] {
-    return make_field_sources(input.particles, expand_fields(scene, input.particles), scene.kernel,
-                              console.warnings(), &console);
+    return make_field_sources(input.particles, expand_fields(scene, input.particles, input.grids),
+                              scene.kernel, console.warnings(), &console, input.grids);
   });
   console.print_warnings();
   const KernelSet kernels = build_kernel_set(input.particles, fields);
-  const std::string csv = to_csv(points, fields, probe(kernels, points));
+  const GridFields grids =
+      with_place(options.path, options.changes, [&] { return make_grid_fields(fields); });
+  constexpr double nowhere = std::numeric_limits<double>::quiet_NaN();
+  const std::string csv = to_csv(points, fields, probe(kernels, grids, points, nowhere));
   if (output) {
     output->write(csv);
     output->commit();
@@ -95,7 +99,7 @@ void add_probe_command(CLI::App& program) {
   CLI::App* command =
       program.add_subcommand("probe", "Print the fields' values and gradients at given points.");
   const auto options = std::make_shared<Options>();
-  command->add_option("FILE", options->path, "particles, or a scene")->required()->type_name("");
+  command->add_option("FILE", options->path, "particles, grids, or a scene")->required()->type_name("");
   command->add_option("--points", options->points, "CSV file of points, or - for standard input")
       ->required()
       ->type_name("P.csv");

@@ -9,9 +9,6 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <string_view>
-#include <system_error>
-#include <utility>
 #include <vector>
 
 #include "core/atomic_file.h"
@@ -21,6 +18,7 @@
 #include "motes/count_option.h"
 #include "motes/frame_times.h"
 #include "motes/input.h"
+#include "motes/named_files.h"
 #include "motes/picture_warnings.h"
 #include "motes/prepare.h"
 #include "motes/scene_options.h"
@@ -41,9 +39,11 @@ Examples:
   motes render run.xyz.gz -o frame7.png --frame 7 --eye 0,0,-80 --target 0,0,0 --fov 30
   motes render scene.json -o picture.exr --stats stats.json --repeat 5
   motes render silica.lammpstrj -o silica.png --save-scene silica.json
+  motes render density.cube -o density.png --interpolation tricubic
 
 Reads LAMMPS dumps and data, XYZ, PDB, mmCIF, CIF, GRO, HDF5 of GADGET, AREPO, SWIFT, GIZMO and
-Phantom, H5MD, CSV and NPY, also compressed with gz, bz2, xz or zst.
+Phantom, H5MD, CSV and NPY, and grids of NRRD, VTI, Gaussian cube and CHGCAR, also compressed with
+gz, bz2, xz or zst.
 MOTES_TARGET=SSE4, AVX2 or AVX-512 in the environment forces an instruction set.)";
 
 struct Options {
@@ -97,30 +97,6 @@ Framebuffer render_frames(const Renderer& renderer, const ResolvedScene& scene,
   return image;
 }
 
-/// Options and the files that they name; a file may be "", none.
-using NamedFiles = std::vector<std::pair<std::string_view, std::filesystem::path>>;
-
-/// One name for all paths to a file; what cannot be looked at stays as it is.
-std::filesystem::path canonical_name(const std::filesystem::path& path) {
-  std::error_code error;
-  const std::filesystem::path canonical = weakly_canonical(path, error);
-  return error ? path : canonical;
-}
-
-/// No two outputs may be one file, and none may be the input.
-void refuse_same_file(const NamedFiles& outputs, const NamedFiles::value_type& input) {
-  for (auto second = outputs.begin(); second != outputs.end(); ++second) {
-    if (second->second.empty()) continue;
-    const auto refuse = [&](const NamedFiles::value_type& first) {
-      if (canonical_name(first.second) != canonical_name(second->second)) return;
-      throw Error(first.second, fmt::format("is both {} and {}; expected two different files",
-                                            first.first, second->first));
-    };
-    refuse(input);
-    std::for_each(outputs.begin(), second, refuse);
-  }
-}
-
 void run(const Options& options) {
   Console console;
   std::optional<tbb::global_control> limit;
@@ -143,6 +119,11 @@ void run(const Options& options) {
 
   Scene scene = open_scene(options.path);
   refuse_same_file(outputs, {"data.path", scene.data_path});
+  for (const Field& field : scene.fields) {
+    if (field.grid && !field.grid->path.empty()) {
+      refuse_same_file(outputs, {"fields.grid", field.grid->path});
+    }
+  }
   options.changes.apply(scene);
   Statistics statistics;
   const PreparedScene prepared =
@@ -154,7 +135,7 @@ void run(const Options& options) {
     saved_scene->write(scene_to_json(prepared.filled_in, directory));
   }
   const bool between_samples =
-      warn_of_large_steps(renderer.kernels(), prepared.resolved.step_size, console.warnings());
+      warn_of_large_steps(renderer, prepared.resolved.step_size, console.warnings());
   statistics.read_ms = prepared.read_ms;
   statistics.build_ms = renderer.build_ms();
   statistics.particles = renderer.kernels().size();
@@ -164,8 +145,8 @@ void run(const Options& options) {
   const Framebuffer image = with_place(options.path, options.changes, [&] {
     return render_frames(renderer, prepared.resolved, options, console, statistics);
   });
-  warn_of_empty_picture(image, renderer.kernels(), prepared.resolved.camera, prepared.extent,
-                        between_samples, console.warnings());
+  warn_of_empty_picture(image, renderer, prepared.resolved.camera, prepared.extent, between_samples,
+                        console.warnings());
   write_image(output, format, image, scene.render.termination_opacity, scene.render.background);
   output.commit();
   if (saved_scene) saved_scene->commit();
@@ -190,7 +171,7 @@ std::string check_suffix(const std::string& path) {
 void add_render_command(CLI::App& program) {
   CLI::App* command = program.add_subcommand("render", "Make a picture of particles.");
   const auto options = std::make_shared<Options>();
-  command->add_option("FILE", options->path, "particles, or a scene")->required()->type_name("");
+  command->add_option("FILE", options->path, "particles, grids, or a scene")->required()->type_name("");
   command->add_option("-o,--output", options->output, "picture: .png, .jpg, .exr or .npy")
       ->required()
       ->type_name("OUT")

@@ -13,6 +13,7 @@
 #include <optional>
 
 #include "core/error.h"
+#include "scene/style.h"
 
 namespace motes {
 namespace {
@@ -136,8 +137,17 @@ void add_number_or_property(CLI::App& command, SceneChanges& changes, const std:
                }
                const NumberOrProperty value =
                    number ? NumberOrProperty(*number) : NumberOrProperty(text);
-               return [member, value](Scene& scene) {
-                 for_each_field(scene, [&](Field& field) { field.*member = value; });
+               return [name, member, value](Scene& scene) {
+                 bool any = false;
+                 for_each_field(scene, [&](Field& field) {
+                   if (field.grid) return;
+                   field.*member = value;
+                   any = true;
+                 });
+                 if (!any) {
+                   throw Error(fmt::format(
+                       "{}: is for fields of particles, and all of the scene's are grids", name));
+                 }
                };
              });
 }
@@ -219,53 +229,31 @@ SceneChanges::Change read_transfer_function_option(const std::string& text) {
   };
 }
 
-/// The molecular surface of VMD's QuickSurf (docs/isosurface.md).
-Field quick_surf() {
-  Field field;
-  field.name = "surface";
-  field.radius = "van_der_waals";
-  field.weight = 1.0;
-  field.normalise = false;
-  field.kernel_shape = KernelShape{};
-  field.support_factor = 4;  // VMD's best quality; a jump of 0.03 %, which is not seen
-  field.isosurfaces = {{0.5, ColorBy::element, 1}};
-  return field;
-}
-
-/// What a style draws besides the fields, if anything.
-std::vector<Geometry> geometry_of_style(std::string_view style) {
-  Geometry balls, sticks;
-  sticks.type = Geometry::Type::sticks;
-  sticks.radius = 0.15;
-  if (style == "spheres") return {balls};
-  balls.scale = 0.25;
-  if (style == "ball-and-stick") return {balls, sticks};
-  balls.scale = 0.15;
-  sticks.radius = 0.08;
-  if (style == "volume+balls") return {balls, sticks};
-  return {};
-}
-
 SceneChanges::Change read_style(const std::string& text) {
-  const std::vector<std::string> names{"volume", "spheres", "ball-and-stick", "volume+balls",
-                                       "surface"};
-  if (std::find(names.begin(), names.end(), text) == names.end()) {
-    throw CLI::ValidationError(
-        fmt::format("--style: {}", unknown_name("style", text, names).what()),
-        CLI::ExitCodes::ValidationError);
+  try {
+    geometry_of_style(text);
+  } catch (const Error& error) {
+    throw CLI::ValidationError(fmt::format("--style: {}", error.what()),
+                               CLI::ExitCodes::ValidationError);
   }
-  return [text](Scene& scene) {
-    scene.geometry = geometry_of_style(text);
-    if (text == "surface") {
-      scene.fields = {quick_surf()};
-      return;
-    }
-    if (text == "spheres" || text == "ball-and-stick") {
-      scene.fields.clear();
-    } else if (scene.fields.empty()) {
-      scene.fields.emplace_back().name = "all";
-    }
-  };
+  return [text](Scene& scene) { apply_style(text, scene); };
+}
+
+SceneChanges::Change read_interpolation(const std::string& text) {
+  try {
+    return [interpolation = interpolation_from_name(text)](Scene& scene) {
+      bool any = false;
+      for (Field& field : scene.fields) {
+        if (!field.grid) continue;
+        field.grid->interpolation = interpolation;
+        any = true;
+      }
+      if (!any) throw Error("--interpolation: is for grids, and none of the fields is one");
+    };
+  } catch (const Error& error) {
+    throw CLI::ValidationError(fmt::format("--interpolation: {}", error.what()),
+                               CLI::ExitCodes::ValidationError);
+  }
 }
 
 SceneChanges::Change read_engine(const std::string& text) {
@@ -375,6 +363,10 @@ void add_field_options(CLI::App& command, SceneChanges& changes) {
              "gaussian, cubic_spline, quintic_spline, wendland_c2, wendland_c4, wendland_c6,\n"
              "or a file of two columns, distance and value (default: gaussian)",
              read_kernel);
+  add_option(command, changes, "--interpolation", "NAME",
+             "how grids are reconstructed: trilinear, tricubic (B-spline through the samples) or\n"
+             "tricubic_smoothing (default: trilinear)",
+             read_interpolation);
   add_number(command, changes, "--support-factor", "S",
              "the Gaussians end at S standard deviations (default: 2)", positive,
              [](Scene& scene, double v) {
@@ -422,8 +414,7 @@ void add_picture_options(CLI::App& command, SceneChanges& changes) {
       ->type_name("NX,NY,NZ,D")
       ->allow_extra_args(false);
   add_option(command, changes, "--style", "NAME",
-             "volume, spheres, ball-and-stick or volume+balls, in place of the scene's geometry",
-             read_style);
+             fmt::format("what is drawn: {}", fmt::join(style_names(), ", ")), read_style);
   add_number(
       command, changes, "--ambient-occlusion", "N",
       "rays a pixel for the ambient occlusion of balls and sticks (default: 16)", ray_count,

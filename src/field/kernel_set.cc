@@ -37,14 +37,13 @@ Bounds3d KernelSet::box() const {
   return centers.extended(max_support);
 }
 
-namespace {
-
-/// The power of two that brings `magnitude` into [1, 2); 1 for 0.
 double unit_scale(double magnitude) {
   if (!(magnitude > 0)) return 1;
   // Kept where both the scale and its cube are normal numbers.
   return std::exp2(std::clamp(-std::floor(std::log2(magnitude)), -300.0, 300.0));
 }
+
+namespace {
 
 constexpr std::size_t grain = 1 << 14;
 
@@ -167,18 +166,20 @@ CommonValues set_fields(const std::vector<FieldSource>& fields,
   const auto scale = static_cast<float>(set.length_scale);
   RadiusRange radius;
   WeightRange weight;
+  bool any_kernels = false;
   set.fields.clear();
   for (std::size_t f = 0; f < fields.size() && !fields[f].drawn_only; ++f) {
     const WeightRange weights = weight_range(fields[f], set.length_scale);
     set.fields.push_back(summarise(fields[f], ranges[f], weights, set.length_scale));
     if (fields[f].index.empty()) continue;
+    any_kernels = true;
     // Rounded as place_kernels() rounds each kernel's: ends that are equal leave nothing between.
     const double unit = set.fields[f].value_scale;
     radius.add({ranges[f].min * scale, ranges[f].max * scale});
     weight.add({static_cast<float>(weights.min * unit), static_cast<float>(weights.max * unit)});
   }
   CommonValues common;
-  if (set.fields.empty()) common = {0.0f, 0.0f};
+  if (!any_kernels) common = {0.0f, 0.0f};
   if (radius.min == radius.max) common.radius = radius.min;
   if (weight.min == weight.max) common.weight = static_cast<float>(weight.min);
   return common;
@@ -303,9 +304,12 @@ KernelSet build_kernel_set(const ParticleSet& particles, const std::vector<Field
     if (!source.drawn_only) box.add(of_source);
     set.has_drawn_only |= source.drawn_only;
   }
-  if (of_all.empty()) return set;
-  if (!box.empty()) set_centers(particles, {Point3d(box.min), Point3d(box.max)}, set);
   const std::vector<RadiusRange> ranges = radius_ranges(fields);
+  if (of_all.empty()) {
+    set_fields(fields, ranges, set);
+    return set;
+  }
+  if (!box.empty()) set_centers(particles, {Point3d(box.min), Point3d(box.max)}, set);
   set.length_scale = unit_scale(largest_length({Point3d(of_all.min), Point3d(of_all.max)}, ranges));
   const CommonValues common = set_fields(fields, ranges, set);
 

@@ -63,6 +63,9 @@ struct KernelSet {
   Bounds3d box() const;
 };
 
+/// The power of two that brings `magnitude` into [1, 2); 1 for 0.
+double unit_scale(double magnitude);
+
 /// What it takes to fit a KernelSet to the next frame of its particles.
 struct KernelOrder {
   /// Kernels in leaf order, counted through all fields' `index`, one field after another.
@@ -71,7 +74,8 @@ struct KernelOrder {
   double leaf_area = 0;             ///< of the tree when it was built
 };
 
-/// Gathers the fields' particles, and those that are only drawn, and builds the tree; keeps what
+/// Gathers the fields' particles, and those that are only drawn, and builds the tree; fields that
+/// are grids are there without kernels, so that fields keep their numbers. Keeps what
 /// refit_kernel_set() takes in `order` if that is not null. Throws Error for too many fields or
 /// kernels.
 KernelSet build_kernel_set(const ParticleSet& particles, const std::vector<FieldSource>& fields,

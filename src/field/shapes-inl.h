@@ -240,6 +240,39 @@ struct SmallTableShape : SumShape {
 };
 #endif
 
+/// 2^exponent for exponents of at most 0; 0 where that is too small for a float.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V factor_of(D d, V exponent) {
+#if HWY_TARGET <= HWY_AVX3
+  // Fraction and power are one operation each, and underflow comes out right.
+  if constexpr (hn::MaxLanes(D()) == 16) {
+    const V fraction{_mm512_reduce_ps(exponent.raw, _MM_FROUND_TO_NEAREST_INT)};
+    const V whole = hn::Sub(exponent, fraction);
+    return V{_mm512_scalef_ps(exp2_fraction(d, fraction).raw, whole.raw)};
+  } else {
+    static_assert(hn::MaxLanes(D()) == 8);
+    const V fraction{_mm256_reduce_ps(exponent.raw, _MM_FROUND_TO_NEAREST_INT)};
+    const V whole = hn::Sub(exponent, fraction);
+    return V{_mm256_scalef_ps(exp2_fraction(d, fraction).raw, whole.raw)};
+  }
+#else
+  return hn::IfThenElseZero(hn::Ge(exponent, hn::Set(d, min_exponent)), exp2_bounded(d, exponent));
+#endif
+}
+
+/// A column's or row's share of a kernel from its share of the squared distance: a factor of a
+/// Gaussian, of other shapes that share itself, in their units.
+template <class Shape, class D, class V = hn::Vec<D>>
+HWY_INLINE V share_of(D d, V minus_inverse_radius_sq, V distance_sq) {
+  const V scale = hn::Mul(minus_inverse_radius_sq, hn::Set(d, -Shape::distance_scale));
+  const V scaled = hn::Mul(scale, distance_sq);
+  if constexpr (Shape::is_product) {
+    return factor_of(d, scaled);
+  } else {
+    return scaled;
+  }
+}
+
 /// Calls use(shape) with the shape of field f's kernels.
 template <class Use>
 HWY_INLINE void with_shape(const SamplingConstants& constants, std::size_t f, Use&& use) {

@@ -29,6 +29,7 @@
 #include "field/sweep_boxes-inl.h"
 #include "samples/area_buffer.h"
 #include "samples/lanes-inl.h"
+#include "samples/spread-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace motes {
@@ -66,39 +67,6 @@ HWY_INLINE SweptKernel place_kernel(const GatheredKernels& gathered, std::size_t
           plane.z - gathered.z[i],
           gathered.minus_inverse_radius_sq[i],
           gathered.peak[i]};
-}
-
-/// 2^exponent for exponents of at most 0; 0 where that is too small for a float.
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE V factor_of(D d, V exponent) {
-#if HWY_TARGET <= HWY_AVX3
-  // Fraction and power are one operation each, and underflow comes out right.
-  if constexpr (hn::MaxLanes(D()) == 16) {
-    const V fraction{_mm512_reduce_ps(exponent.raw, _MM_FROUND_TO_NEAREST_INT)};
-    const V whole = hn::Sub(exponent, fraction);
-    return V{_mm512_scalef_ps(exp2_fraction(d, fraction).raw, whole.raw)};
-  } else {
-    static_assert(hn::MaxLanes(D()) == 8);
-    const V fraction{_mm256_reduce_ps(exponent.raw, _MM_FROUND_TO_NEAREST_INT)};
-    const V whole = hn::Sub(exponent, fraction);
-    return V{_mm256_scalef_ps(exp2_fraction(d, fraction).raw, whole.raw)};
-  }
-#else
-  return hn::IfThenElseZero(hn::Ge(exponent, hn::Set(d, min_exponent)), exp2_bounded(d, exponent));
-#endif
-}
-
-/// A column's or row's share of a kernel from its share of the squared distance: a factor of a
-/// Gaussian, of other shapes that share itself, in their units.
-template <class Shape, class D, class V = hn::Vec<D>>
-HWY_INLINE V share_of(D d, V minus_inverse_radius_sq, V distance_sq) {
-  const V scale = hn::Mul(minus_inverse_radius_sq, hn::Set(d, -Shape::distance_scale));
-  const V scaled = hn::Mul(scale, distance_sq);
-  if constexpr (Shape::is_product) {
-    return factor_of(d, scaled);
-  } else {
-    return scaled;
-  }
 }
 
 /// A kernel's factors in the columns and rows of its box, for at most so many groups of each.
@@ -139,24 +107,6 @@ struct BoxFactors {
     slope_z = kernel.dz * kernel.minus_inverse_radius_sq;
   }
 };
-
-/// Rows of a group spread over a vector: block v of a group takes, of four numbers that are one a
-/// row, that of each lane's row.
-HWY_INLINE Lanes spread_rows(LaneTag d, const float* rows, int v) {
-  if constexpr (num_lanes == AreaBuffer::group_size) {
-    return hn::Set(d, rows[v]);
-  } else {
-    alignas(64) static constexpr std::uint8_t order[2][64] = {
-        {0, 1, 2,  3,  0,  1,  2,  3,  0,  1,  2,  3,  0,  1,  2,  3,  4,  5,  6,  7, 4,  5,
-         6, 7, 4,  5,  6,  7,  4,  5,  6,  7,  8,  9,  10, 11, 8,  9,  10, 11, 8,  9, 10, 11,
-         8, 9, 10, 11, 12, 13, 14, 15, 12, 13, 14, 15, 12, 13, 14, 15, 12, 13, 14, 15},
-        {8,  9,  10, 11, 8,  9,  10, 11, 8,  9,  10, 11, 8,  9,  10, 11,
-         12, 13, 14, 15, 12, 13, 14, 15, 12, 13, 14, 15, 12, 13, 14, 15}};
-    const hn::Repartition<std::uint8_t, LaneTag> bytes;
-    const auto four = hn::BitCast(bytes, hn::LoadDup128(d, rows));
-    return hn::BitCast(d, hn::TableLookupBytes(four, hn::Load(bytes, order[v])));
-  }
-}
 
 /// sum + v where `inside`. Not sum itself elsewhere: compilers make a masked store of that, which
 /// processors do not forward to the next load.

@@ -11,17 +11,6 @@
 
 namespace motes {
 
-/// How a field is made of samples (docs/grid.md). All reproduce a linear field exactly, to the
-/// faces.
-enum class Reconstruction {
-  /// Trilinear interpolation. Gradient: central differences at the samples, interpolated likewise.
-  trilinear,
-  /// Cubic B-spline through the samples, twice continuously differentiable, and its own gradient.
-  tricubic,
-  /// Cubic B-spline with the samples for coefficients: it smooths and does not pass through them.
-  tricubic_smoothing
-};
-
 /// A field at a point: the value, and the gradient per length unit in world axes.
 struct GridSample {
   double value = 0;

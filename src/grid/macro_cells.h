@@ -31,6 +31,8 @@ class MacroCells {
                      static_cast<std::size_t>(j);
     return ranges_[row * static_cast<std::size_t>(dims_[0]) + static_cast<std::size_t>(i)];
   }
+  /// Of all blocks, those of a row along x one after the other.
+  const std::vector<Range>& ranges() const { return ranges_; }
 
  private:
   std::array<int, 3> dims_;

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <span>
 
+#include "core/atomic_file.h"
 #include "particles/grid.h"
 
 namespace motes {
@@ -15,6 +16,8 @@ enum class NrrdEncoding { raw, gzip };
 /// periodic is not kept. Whole or not at all; throws Error as AtomicFile does.
 void write_nrrd(const std::filesystem::path& path, const Grid& grid,
                 NrrdEncoding encoding = NrrdEncoding::raw);
+/// Into a file that is open, and that the caller commits.
+void write_nrrd(AtomicFile& file, const Grid& grid, NrrdEncoding encoding = NrrdEncoding::raw);
 
 enum class VtiEncoding { raw, base64 };
 
@@ -23,6 +26,9 @@ enum class VtiEncoding { raw, base64 };
 /// at right angles; unit and periodicity are not kept. Whole or not at all; throws Error as
 /// AtomicFile does.
 void write_vti(const std::filesystem::path& path, std::span<const Grid> grids,
+               VtiEncoding encoding = VtiEncoding::raw);
+/// Into a file that is open, and that the caller commits.
+void write_vti(AtomicFile& file, std::span<const Grid> grids,
                VtiEncoding encoding = VtiEncoding::raw);
 
 }  // namespace motes

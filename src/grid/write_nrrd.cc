@@ -70,14 +70,18 @@ void write_gzip(AtomicFile& file, std::string_view bytes) {
 
 }  // namespace
 
-void write_nrrd(const std::filesystem::path& path, const Grid& grid, NrrdEncoding encoding) {
-  AtomicFile file(path);
+void write_nrrd(AtomicFile& file, const Grid& grid, NrrdEncoding encoding) {
   file.write(header_of(grid, encoding));
   if (encoding == NrrdEncoding::gzip) {
     write_gzip(file, value_bytes(grid));
   } else {
     file.write(value_bytes(grid));
   }
+}
+
+void write_nrrd(const std::filesystem::path& path, const Grid& grid, NrrdEncoding encoding) {
+  AtomicFile file(path);
+  write_nrrd(file, grid, encoding);
   file.commit();
 }
 

@@ -97,10 +97,8 @@ void write_base64(AtomicFile& file, std::string head, std::string_view bytes) {
 
 }  // namespace
 
-void write_vti(const std::filesystem::path& path, std::span<const Grid> grids,
-               VtiEncoding encoding) {
+void write_vti(AtomicFile& file, std::span<const Grid> grids, VtiEncoding encoding) {
   assert(!grids.empty());
-  AtomicFile file(path);
   file.write(header_of(grids, encoding));
   for (const Grid& grid : grids) {
     assert(grid.dims == grids[0].dims && grid.origin == grids[0].origin &&
@@ -113,6 +111,12 @@ void write_vti(const std::filesystem::path& path, std::span<const Grid> grids,
     }
   }
   file.write("\n</AppendedData>\n</VTKFile>\n");
+}
+
+void write_vti(const std::filesystem::path& path, std::span<const Grid> grids,
+               VtiEncoding encoding) {
+  AtomicFile file(path);
+  write_vti(file, grids, encoding);
   file.commit();
 }
 

@@ -34,4 +34,14 @@ ImageDifference compare_images(const Framebuffer& a, const Framebuffer& b,
   return result;
 }
 
+double peak_signal_to_noise(const DisplayImage& a, const DisplayImage& b) {
+  assert(a.width == b.width && a.height == b.height && !a.rgb.empty());
+  double sum_of_squares = 0;
+  for (std::size_t i = 0; i < a.rgb.size(); ++i) {
+    const double difference = static_cast<double>(a.rgb[i]) - static_cast<double>(b.rgb[i]);
+    sum_of_squares += difference * difference;
+  }
+  return 10 * std::log10(255. * 255. * static_cast<double>(a.rgb.size()) / sum_of_squares);
+}
+
 }  // namespace motes

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "image/display.h"
 #include "image/framebuffer.h"
 
 namespace motes {
@@ -20,5 +21,9 @@ struct ImageDifference {
 /// A channel that is NaN in either image differs by infinity.
 ImageDifference compare_images(const Framebuffer& a, const Framebuffer& b,
                                const std::vector<unsigned char>& skip = {});
+
+/// Peak signal-to-noise ratio of `b` to `a`, of the same size, as they are shown: 20 log10(255 /
+/// rms difference of the sRGB-encoded channels), decibels. Infinite where they are the same.
+double peak_signal_to_noise(const DisplayImage& a, const DisplayImage& b);
 
 }  // namespace motes

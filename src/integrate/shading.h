@@ -13,7 +13,9 @@ struct ShadingConstants {
   bool clipped =
       false;  ///< there are clip planes: samples outside of rays may be none of the volume
   bool headlight = true;
-  float light[3] = {0, 0, -1};    ///< unit vector towards the light, camera axes; unless headlight
+  float light[3] = {0, 0, -1};  ///< unit vector towards the light, camera axes; unless headlight
+  /// Values may be NaN: there the field is not, and shows nothing.
+  bool has_gaps = false;
   std::vector<float> min_radius;  ///< internal length, one a field
 };
 

@@ -59,6 +59,10 @@ std::vector<Grid> read_grids(const std::filesystem::path& path, const ReadOption
   throw Error(path, fmt::format("is no grid of a known format; expected one of {}", known));
 }
 
+std::string_view grid_format(const std::filesystem::path& path) {
+  return find_grid_format(path, read_head(path))->name;
+}
+
 bool is_grid_file(const std::filesystem::path& path) {
   const std::string head = read_head(path);
   const GridFormat* format = head.empty() ? nullptr : find_grid_format(path, head);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string_view>
 #include <vector>
 
 #include "io/reader.h"
@@ -19,5 +20,8 @@ std::vector<Grid> read_grids(const std::filesystem::path& path, const ReadOption
 /// damaged all the same. A file of cube or CHGCAR is one of particles as well. Throws Error if the
 /// file cannot be opened.
 bool is_grid_file(const std::filesystem::path& path);
+
+/// Name of the format by which read_grids() reads the file. Precondition: is_grid_file().
+std::string_view grid_format(const std::filesystem::path& path);
 
 }  // namespace motes

@@ -95,6 +95,12 @@ std::unique_ptr<Trajectory> open_trajectory(const std::filesystem::path& path,
   return format->open(path, options);
 }
 
+bool has_particles(const std::filesystem::path& path) {
+  const std::string head = read_head(path);
+  const Format* format = head.empty() ? nullptr : find_format(path, head);
+  return format != nullptr && format->open(path, {})->read_frame(0).size() > 0;
+}
+
 void throw_no_such_frame(const std::filesystem::path& path, std::size_t frame,
                          std::size_t num_frames) {
   throw Error(path, num_frames == 1

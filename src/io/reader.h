@@ -38,6 +38,10 @@ class Trajectory {
 std::unique_ptr<Trajectory> open_trajectory(const std::filesystem::path& path,
                                             const ReadOptions& options);
 
+/// Whether open_trajectory() knows the file's format and its first frame has any particles. Throws
+/// Error if the file cannot be read.
+bool has_particles(const std::filesystem::path& path);
+
 /// For Trajectory::read_frame(): throws the Error for a frame beyond the last of `num_frames` > 0.
 [[noreturn]] void throw_no_such_frame(const std::filesystem::path& path, std::size_t frame,
                                       std::size_t num_frames);

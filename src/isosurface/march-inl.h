@@ -175,18 +175,18 @@ class SlabMarch {
     const auto may = hn::And(hn::And(hn::Lt(fall, zero), hn::Gt(rise, zero)),
                              hn::And(hn::Ge(b, zero), hn::Le(lowest, zero)));
     unsigned open = mask_bits(d, may) & packet_->active;
+    const unsigned in_before = ~mask_bits(d, below);
     unsigned found = 0;
     Lanes low = hn::Set(d, depth_of(k - 1)), high = hn::Set(d, depth_of(k));
     constexpr int turns = 10;
     for (int i = 0; i < turns && open != 0; ++i) {
       const Lanes z = hn::Mul(hn::Set(d, 0.5f), hn::Add(low, high));
       const AlongRays at = evaluate(k, z);
-      const Lanes f = upright(hn::Sub(at.value, hn::Set(d, level.value)));
       const auto falls = hn::Lt(upright(at.slope), zero);
       low = hn::IfThenElse(falls, z, low);
       high = hn::IfThenElse(falls, high, z);
-      const unsigned crossed =
-          mask_bits(d, hn::IfThenElse(below, hn::Lt(f, zero), hn::Le(f, zero))) & open;
+      const unsigned in = mask_bits(d, hn::Gt(at.value, hn::Set(d, level.value)));
+      const unsigned crossed = (in ^ in_before) & open;
       middle = hn::IfThenElse(lanes_of(crossed), z, middle);
       found |= crossed;
       open &= ~crossed;

@@ -9,6 +9,8 @@
 #include <limits>
 #include <numbers>
 
+#include "reference/grid.h"
+
 namespace motes::reference {
 
 namespace {
@@ -21,18 +23,43 @@ constexpr double faintest_normal = 1e-20;
 /// All fields' kernels, and what of the scene is the same for every ray.
 struct Volume {
   std::vector<std::vector<ParticleKernel>> fields;
-  std::vector<double> smallest_radius;  ///< of each field's particles
-  std::vector<double> largest_peak;     ///< of each field's kernels
+  std::vector<std::optional<GridField>> grids;  ///< one a field, where it is one
+  std::vector<double> smallest_radius;          ///< of each field's particles
+  std::vector<double> largest_peak;             ///< of each field's kernels
   Bounds3d box;
   Vector3d forward;
   double near = 0,
          far = -1;  ///< depths between which all of the box lies; far < near without particles
 };
 
+double shortest_step(const Grid& grid) {
+  return std::min({length(grid.steps[0]), length(grid.steps[1]), length(grid.steps[2])});
+}
+
+std::vector<Point3d> hull_corners(const Grid& grid) {
+  const double less = grid.periodic ? 0 : 1;
+  std::vector<Point3d> corners;
+  for (const double i : {0., static_cast<double>(grid.dims[0]) - less}) {
+    for (const double j : {0., static_cast<double>(grid.dims[1]) - less}) {
+      for (const double k : {0., static_cast<double>(grid.dims[2]) - less}) {
+        corners.push_back(grid.origin + i * grid.steps[0] + j * grid.steps[1] + k * grid.steps[2]);
+      }
+    }
+  }
+  return corners;
+}
+
 Volume make_volume(const ParticleSet& particles, const ResolvedScene& scene) {
   Volume volume;
   for (const FieldSource& source : scene.fields) {
     volume.fields.push_back(particle_kernels(particles, source));
+    volume.grids.emplace_back();
+    if (source.grid) {
+      volume.grids.back().emplace(*source.grid, source.interpolation);
+      volume.largest_peak.push_back(0);
+      volume.smallest_radius.push_back(shortest_step(*source.grid));
+      continue;
+    }
     double smallest = std::numeric_limits<double>::infinity(), largest = 0;
     for (const ParticleKernel& kernel : volume.fields.back()) {
       smallest = std::min(smallest, kernel.radius);
@@ -42,6 +69,10 @@ Volume make_volume(const ParticleSet& particles, const ResolvedScene& scene) {
     volume.smallest_radius.push_back(smallest);
   }
   volume.box = volume_box(volume.fields);
+  for (const FieldSource& source : scene.fields) {
+    if (!source.grid) continue;
+    for (const Point3d& corner : hull_corners(*source.grid)) volume.box.add(corner);
+  }
   volume.forward = normalize(scene.camera.target - scene.camera.eye);
   if (volume.box.empty()) return volume;
   volume.near = std::numeric_limits<double>::infinity();
@@ -108,7 +139,18 @@ std::vector<Classified> classify_sample(const Volume& volume, const ResolvedScen
   const double tolerance = stability_tolerance * length(x - scene.camera.eye);
   std::vector<Classified> samples;
   for (std::size_t f = 0; f < fields.size(); ++f) {
-    const FieldValue field = evaluate_field(fields[f], x);
+    FieldValue field;
+    if (volume.grids[f]) {
+      const GridField::Sample grid_sample = volume.grids[f]->at(x);
+      if (grid_sample.face_distance <= tolerance) pixel.unstable = true;
+      if (!grid_sample.field) {
+        samples.push_back({});  // nothing, not even the field's zero
+        continue;
+      }
+      field = *grid_sample.field;
+    } else {
+      field = evaluate_field(fields[f], x);
+    }
     if (field.boundary_distance <= tolerance) pixel.unstable = true;
     pixel.kernel_evaluations += field.num_kernels;
     Classified sample = classify(scene.transfer_functions[f], field.value);

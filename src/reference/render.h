@@ -53,7 +53,8 @@ struct CameraRay {
 /// The ray through the middle of the pixel in column px from the left and row py from the top.
 CameraRay camera_ray(const Camera& camera, int width, int height, int px, int py);
 
-/// The box of all particles' centres of all fields, extended by the largest support radius.
+/// The box of all particles' centres of all fields, extended by the largest support radius;
+/// render() adds that of grids.
 Bounds3d volume_box(const std::vector<std::vector<ParticleKernel>>& fields);
 
 struct Classified {

@@ -53,7 +53,7 @@ void set_colors(const GeometrySource& geometry, const UninitializedVector<std::u
     if (place.count(srgb) != 0) continue;
     if (colors.palette.size() == palette_size) break;
     place.emplace(srgb, static_cast<std::uint8_t>(colors.palette.size()));
-    colors.palette.push_back(color_from_srgb(srgb));
+    colors.palette.push_back(color_from_srgb(srgb & 0xffffff));
   }
   if (colors.palette.size() == 1) return;
   const bool fits = std::all_of(geometry.srgb.begin(), geometry.srgb.end(),
@@ -68,8 +68,7 @@ void set_colors(const GeometrySource& geometry, const UninitializedVector<std::u
     if (fits) {
       colors.index[i] = place[srgb];
     } else {
-      // Red in the low byte.
-      colors.srgb[i] = (srgb & 0xff) << 16 | (srgb & 0xff00) | srgb >> 16;
+      colors.set_srgb(i, srgb);
     }
   }
 }
@@ -78,13 +77,14 @@ void set_colors(const GeometrySource& geometry, const UninitializedVector<std::u
 
 Surface make_surface(const ParticleSet& particles, const GeometrySource& geometry,
                      const std::vector<FieldSource>& sources, const KernelOrder& order,
-                     const KernelSet& kernels) {
+                     const KernelSet& kernels, FieldValues& field_values) {
   Surface surface;
   surface.kernels = &kernels;
   const auto particle_of = particles_in_order(sources, order);
   const auto drawn = find_drawn(particles, geometry, particle_of);
   set_radii(geometry, drawn, kernels.length_scale, surface);
   set_colors(geometry, drawn, surface.colors);
+  field_values = find_field_values(kernels, geometry, particle_of, drawn);
   if (!geometry.bonds.empty()) {
     surface.sticks = make_sticks(particles, geometry.bonds, particle_of, kernels,
                                  static_cast<float>(geometry.stick_radius * kernels.length_scale));
@@ -108,8 +108,11 @@ std::optional<FieldSource> find_drawn_only(const ParticleSet& particles,
   if (drawn_only.index.empty()) return std::nullopt;
   // A radius that fields have keeps theirs in one number, if it is; else the view is fitted by it.
   const float largest = *std::max_element(geometry.radius.begin(), geometry.radius.end());
-  drawn_only.radius = {sources.empty() ? 0.5F * largest : sources[0].radius[0]};
-  drawn_only.weight = {sources.empty() ? 1.0F : sources[0].weight[0]};
+  const auto of_particles =
+      std::find_if(sources.begin(), sources.end(), [](const FieldSource& s) { return !s.grid; });
+  const bool any = of_particles != sources.end();
+  drawn_only.radius = {any ? of_particles->radius[0] : 0.5F * largest};
+  drawn_only.weight = {any ? of_particles->weight[0] : 1.0F};
   return drawn_only;
 }
 

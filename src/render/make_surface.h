@@ -6,6 +6,7 @@
 
 #include "field/kernel_set.h"
 #include "particles/particle_set.h"
+#include "render/field_colors.h"
 #include "scene/geometry.h"
 #include "scene/scene.h"
 #include "surface/surface.h"
@@ -14,9 +15,10 @@ namespace motes {
 
 /// What draws `geometry`, whose particles are all in `kernels`; these were built from `sources` in
 /// `order`, and must outlive the surface. A particle that several fields have is drawn once.
+/// `field_values` become those of particles in their fields' colours, or empty.
 Surface make_surface(const ParticleSet& particles, const GeometrySource& geometry,
                      const std::vector<FieldSource>& sources, const KernelOrder& order,
-                     const KernelSet& kernels);
+                     const KernelSet& kernels, FieldValues& field_values);
 
 /// What the tree needs to have the drawn particles that no field has, or nothing if there are none.
 std::optional<FieldSource> find_drawn_only(const ParticleSet& particles,

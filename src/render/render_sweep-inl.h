@@ -24,6 +24,7 @@
 #include "render/block_layers-inl.h"
 #include "render/ray_packets.h"
 #include "render/ray_state-inl.h"
+#include "render/sample_grids-inl.h"
 #include "render/tile_output-inl.h"
 #include "samples/area_buffer.h"
 #include "samples/lanes-inl.h"
@@ -180,7 +181,7 @@ class AreaSweep {
       num_gathered += gathered.size;
     }
     clock_.lap(Stage::traverse);
-    if (num_gathered == 0 && !integrator_.zero_shows()) return;
+    if (num_gathered == 0 && !integrator_.zero_shows() && context_.grids.empty()) return;
     const AreaPixels pixels = place_pixels(bounds_, image_bounds_, frame);
     for (std::uint32_t g = 0; g < constants_.num_groups; ++g) {
       find_thin_kernels(pixels, frame, memory_.gathered[g]);
@@ -277,11 +278,38 @@ class AreaSweep {
     }
   }
 
+  /// Pass 1 for a group, of the fields that are grids.
+  void sample_grids(int row, int column, const Slab& batch) {
+    for (int v = 0; v < group_blocks; ++v) {
+      const std::size_t b = first_block(row, column) + static_cast<std::size_t>(v);
+      if (memory_.begin[b] >= batch.first + batch.count || memory_.end[b] < batch.first) continue;
+      const RayPacket packet =
+          make_ray_packet(context_, area_.x + column * AreaBuffer::group_size,
+                          area_.y + row * AreaBuffer::group_size + v * block_rows,
+                          AreaBuffer::group_size, block_rows);
+      for (const FrameGrid& grid : context_.grids) {
+        float* const out = memory_.buffer.at(row, column) +
+                           static_cast<std::size_t>(v) * memory_.buffer.block_floats() +
+                           grid.field * field_floats_;
+        AreaBuffer::PlaneBits& touched = memory_.buffer.touched(row, column)[grid.field];
+        sample_frame_grid(grid, packet, context_.view.planes, batch, context_.gradients,
+                          context_.absolute, out, memory_.buffer.plane_floats(),
+                          [&](int k) { touched |= AreaBuffer::PlaneBits{1} << k; });
+      }
+    }
+  }
+
   /// Pass 2 for some groups of a row, whose samples are zero afterwards.
   void integrate_groups(int row, int first, const Slab& batch) {
     const GroupBits some = ((1u << taken_groups) - 1) << first;
     const GroupBits live = live_.row(row) & some;
     const GroupBits thin = memory_.columns.touched(row) & some;
+    if (!context_.grids.empty()) {
+      for (GroupBits left = live; left != 0; left &= left - 1) {
+        sample_grids(row, std::countr_zero(left), batch);
+      }
+      clock_.lap(Stage::sums);
+    }
     GroupBits visible = 0;
     for (GroupBits left = thin; left != 0; left &= left - 1) {
       const int column = std::countr_zero(left);

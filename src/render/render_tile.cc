@@ -10,6 +10,7 @@
 // Included again for each instruction set.
 #include <hwy/highway.h>
 
+#include "core/flush_tiny.h"
 #include "field/cells-inl.h"
 #include "field/coherent-inl.h"
 #include "field/direct-inl.h"
@@ -18,28 +19,13 @@
 #include "render/ray_packets.h"
 #include "render/ray_state-inl.h"
 #include "render/render_sweep-inl.h"
+#include "render/sample_grids-inl.h"
 #include "render/tile_output-inl.h"
 #include "samples/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace motes {
 namespace HWY_NAMESPACE {
-
-/// While it lives, this thread takes numbers below 1e-38 for zero: far from a kernel's centre its
-/// factors are so small, and arithmetic with them takes the processor many times as long.
-class FlushTinyToZero {
- public:
-  FlushTinyToZero() : saved_(_mm_getcsr()) {
-    constexpr unsigned flush_to_zero = 0x8000, denormals_are_zero = 0x0040;
-    _mm_setcsr(saved_ | flush_to_zero | denormals_are_zero);
-  }
-  ~FlushTinyToZero() { _mm_setcsr(saved_); }
-  FlushTinyToZero(const FlushTinyToZero&) = delete;
-  FlushTinyToZero& operator=(const FlushTinyToZero&) = delete;
-
- private:
-  unsigned saved_;
-};
 
 /// Pass 1 for one slab, by the engine and with the channels of the frame.
 std::uint64_t sample_field(const FrameContext& context, const SamplingConstants& constants,
@@ -63,6 +49,17 @@ std::uint64_t sample_field(const FrameContext& context, const SamplingConstants&
   return sample.template operator()<false, false>();
 }
 
+/// Pass 1 for one slab, of the fields that are grids.
+void sample_grids(const FrameContext& context, const RayPacket& packet, const Slab& slab,
+                  SampleBuffer& buffer) {
+  const std::size_t stride = buffer.layout().floats_per_sample();
+  for (const FrameGrid& grid : context.grids) {
+    sample_frame_grid(grid, packet, context.view.planes, slab, context.gradients, context.absolute,
+                      buffer.at(0, static_cast<int>(grid.field)), stride,
+                      [&](int i) { buffer.touch(i, i); });
+  }
+}
+
 /// The paper's multi-pass algorithm (section 4.2): slab by slab, sampling then integrating, until
 /// all rays of the packet have ended. Returns kernel evaluations.
 std::uint64_t render_packet(const FrameContext& context, const SamplingConstants& constants,
@@ -73,7 +70,10 @@ std::uint64_t render_packet(const FrameContext& context, const SamplingConstants
   for (SampleIndex k = rays.begin; k <= rays.end; k += context.samples_per_pass) {
     const Slab slab{k, std::min(rays.end - k + 1, context.samples_per_pass)};
     buffer.reserve(slab.count);
-    evaluations += sample_field(context, constants, packet, rays, slab, buffer);
+    if (context.any_kernels) {
+      evaluations += sample_field(context, constants, packet, rays, slab, buffer);
+    }
+    sample_grids(context, packet, slab, buffer);
     clock.lap(Stage::sums);
     integrator.run(slab, buffer, rays, layers);
     clear_touched(buffer);

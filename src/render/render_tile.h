@@ -11,6 +11,7 @@
 #include "image/framebuffer.h"
 #include "integrate/classifier.h"
 #include "integrate/shading.h"
+#include "render/frame_grids.h"
 #include "render/stages.h"
 #include "samples/layers.h"
 #include "samples/samples.h"
@@ -34,6 +35,8 @@ struct FrameContext {
   bool gradients = false, absolute = false;  ///< channels of the samples
   int samples_per_pass = 32;                 ///< planes of a slab
   bool count_inside = false;                 ///< see TileCounts; the sweep alone, without gradients
+  bool any_kernels = true;                   ///< else all fields are grids
+  std::vector<FrameGrid> grids;              ///< of the fields those that are grids
   LayerSource layers;                        ///< of surfaces; empty: there are none
   std::vector<ClipPlane> clip_planes;  ///< unit normals; internal lengths from kernels->origin
 

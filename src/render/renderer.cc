@@ -21,6 +21,7 @@
 #include "render/render_tile.h"
 #include "render/surface_layers.h"
 #include "samples/area_buffer.h"
+#include "surface/cut.h"
 
 namespace motes {
 namespace {
@@ -35,6 +36,14 @@ ClipPlane to_internal(const KernelSet& kernels, const ClipPlane& plane) {
   const Vector3d normal = normalize(plane.normal);
   const double distance = plane.distance - dot(normal, kernels.origin - Point3d{});
   return {normal, kernels.length_scale * distance};
+}
+
+std::vector<ClipPlane> clip_planes_of(const ResolvedScene& scene, const KernelSet& kernels) {
+  std::vector<ClipPlane> planes;
+  for (const ClipPlane& plane : scene.render.clip_planes) {
+    planes.push_back(to_internal(kernels, plane));
+  }
+  return planes;
 }
 
 /// half_height() in internal lengths where it is a length.
@@ -65,15 +74,15 @@ ShadingConstants make_shading(const ResolvedScene& scene, const CameraAxes& axes
 constexpr int max_single_pass = 1 << 16;
 
 /// Refuses steps so small that a frame would never end.
-void check_step(const KernelSet& kernels, const ResolvedScene& scene) {
+void check_step(const Bounds3d& box, const ResolvedScene& scene) {
   constexpr double max_samples = 1e7;
-  const double samples = length(kernels.box().diagonal()) / scene.step_size;
+  const double samples = length(box.diagonal()) / scene.step_size;
   if (samples > max_samples) {
     throw Error(fmt::format(
         "render.step_size: {:g} takes {:.3g} samples through the volume; expected {:g} or more",
         scene.step_size, samples, samples * scene.step_size / max_samples));
   }
-  const double farthest = length(kernels.box().center() - scene.camera.eye);
+  const double farthest = length(box.center() - scene.camera.eye);
   constexpr double max_index = 4503599627370496.0;  // 2^52: depths of planes are still exact
   if (farthest / scene.step_size > max_index) {
     throw Error(
@@ -94,9 +103,10 @@ View make_view(const CameraAxes& axes, const Point3d& eye, const Bounds3d& box, 
   return {axes, eye, {static_cast<std::int64_t>(std::max(first, 0.0)), step}};
 }
 
-FrameContext make_context(const KernelSet& kernels, const ResolvedScene& scene,
-                          const RenderOptions& options) {
-  check_step(kernels, scene);
+FrameContext make_context(const KernelSet& kernels, const GridFields& grids,
+                          const ResolvedScene& scene, const RenderOptions& options) {
+  const Bounds3d box = volume_box(kernels, grids);
+  check_step(box, scene);
   const CameraAxes axes = camera_axes(scene.camera);
   FrameContext context;
   context.kernels = &kernels;
@@ -105,7 +115,6 @@ FrameContext make_context(const KernelSet& kernels, const ResolvedScene& scene,
   context.orthographic = scene.camera.orthographic_height.has_value();
   context.half_height = internal_half_height(kernels, scene.camera);
   context.half_width = context.half_height * context.width / context.height;
-  const Bounds3d box = kernels.box();
   context.box = {to_internal(kernels, box.min), to_internal(kernels, box.max)};
   context.view = make_view(axes, to_internal(kernels, scene.camera.eye), context.box,
                            scene.step_size * kernels.length_scale);
@@ -114,12 +123,17 @@ FrameContext make_context(const KernelSet& kernels, const ResolvedScene& scene,
         scene.transfer_functions[f], kernels.fields[f].value_scale, scene.step_size));
     context.absolute = context.absolute || kernels.fields[f].mixed_signs;
   }
+  context.grids =
+      make_frame_grids(grids, kernels, context.view, scene.transfer_functions, context.classifiers);
+  context.any_kernels = grids.size() < kernels.fields.size();
   context.shading = make_shading(scene, axes, kernels);
+  context.shading.has_gaps = !grids.empty();
   if (!context.orthographic) {
     context.shading.max_ray_length =
         static_cast<float>(std::hypot(1, context.half_width, context.half_height));
   }
-  context.engine = scene.render.engine;
+  // Without kernels engines are all the same.
+  context.engine = context.any_kernels ? scene.render.engine : Engine::coherent;
   context.count_inside = options.count_inside && context.engine == Engine::sweep;
   context.gradients = scene.render.lighting.enabled && !context.count_inside;
   context.absolute = context.absolute && context.gradients;
@@ -129,9 +143,7 @@ FrameContext make_context(const KernelSet& kernels, const ResolvedScene& scene,
                                                              : 64 / num_fields;
   const int per_pass = options.samples_per_pass.value_or(default_planes);
   context.layers = options.layers;
-  for (const ClipPlane& plane : scene.render.clip_planes) {
-    context.clip_planes.push_back(to_internal(kernels, plane));
-  }
+  context.clip_planes = clip_planes_of(scene, kernels);
   context.shading.clipped = !context.clip_planes.empty();
   context.samples_per_pass = per_pass == 0 ? max_single_pass : per_pass;
   return context;
@@ -225,7 +237,9 @@ Renderer::Renderer(const ParticleSet& particles, const std::vector<FieldSource>&
                    const GeometrySource& geometry) {
   const Stopwatch stopwatch;
   if (geometry.empty() && !any_colored(fields)) {
+    grids_ = make_grid_fields(fields);
     *kernels_ = build_kernel_set(particles, fields);
+    set_units(grids_, *kernels_);
   } else {
     build(particles, fields, geometry);
     order_ = {};
@@ -236,12 +250,15 @@ Renderer::Renderer(const ParticleSet& particles, const std::vector<FieldSource>&
 void Renderer::build(const ParticleSet& particles, const std::vector<FieldSource>& fields,
                      const GeometrySource& geometry) {
   surface_.reset();
+  field_values_ = {};
   *kernels_ = {};  // its memory is free before the new one needs it
+  grids_ = make_grid_fields(fields);
   const auto build_from = [&](const std::vector<FieldSource>& sources) {
     *kernels_ = build_kernel_set(particles, sources, &order_);
     species_ = species_of_kernels(particles, sources, order_);
+    set_units(grids_, *kernels_);
     if (geometry.empty()) return;
-    surface_ = make_surface(particles, geometry, sources, order_, *kernels_);
+    surface_ = make_surface(particles, geometry, sources, order_, *kernels_, field_values_);
   };
   const std::optional<FieldSource> drawn_only = find_drawn_only(particles, geometry, fields);
   if (!drawn_only) return build_from(fields);
@@ -256,7 +273,9 @@ TreeUpdate Renderer::set_particles(const ParticleSet& particles,
   const Stopwatch stopwatch;
   cells_.reset();
   TreeUpdate update = TreeUpdate::refitted;
-  if (!geometry.empty() || surface_ || any_colored(fields) ||
+  const bool any_grids = std::any_of(
+      fields.begin(), fields.end(), [](const FieldSource& field) { return field.grid != nullptr; });
+  if (!geometry.empty() || surface_ || any_grids || !grids_.empty() || any_colored(fields) ||
       !refit_kernel_set(particles, fields, order_, *kernels_)) {
     update = TreeUpdate::rebuilt;
     build(particles, fields, geometry);
@@ -310,9 +329,21 @@ void Renderer::render(const ResolvedScene& scene, const RenderOptions& options, 
   }
   const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
   TileCounts all;
+  std::optional<Surface> cut_surface;
+  if (surface_ && !scene.render.clip_planes.empty()) {
+    cut_surface = cut(*surface_, clip_planes_of(scene, *kernels_));
+  }
+  std::optional<SurfaceColors> field_colors;
+  if (!field_values_.empty()) {
+    field_colors = color_by_fields(surface_->colors, field_values_, scene.transfer_functions);
+  }
   std::optional<SurfaceFrame> solids;
   FrameSurfaces surfaces;
-  if (surface_) surfaces.solids = &solids.emplace(frame_of(*surface_, scene));
+  if (surface_) {
+    solids = frame_of(cut_surface ? *cut_surface : *surface_, scene);
+    solids->colors = field_colors ? &*field_colors : &surface_->colors;
+    surfaces.solids = &*solids;
+  }
   const auto draw_surfaces_only = [&] {
     std::fill(image.rgba.begin(), image.rgba.end(), 0.0f);
     if (!surfaces.any()) return;
@@ -322,10 +353,10 @@ void Renderer::render(const ResolvedScene& scene, const RenderOptions& options, 
       composite_layers(layers, tile, image);
     });
   };
-  if (kernels_->fields.empty() || kernels_->size() == 0) {
+  if (kernels_->fields.empty() || (kernels_->size() == 0 && grids_.empty())) {
     draw_surfaces_only();
   } else {
-    FrameContext context = make_context(*kernels_, scene, options);
+    FrameContext context = make_context(*kernels_, grids_, scene, options);
     std::optional<ShadedIsosurfaces> isosurfaces;
     if (!scene.isosurfaces.empty()) {
       isosurfaces = make_isosurfaces(scene, context, image_plane(*kernels_, scene),

@@ -12,6 +12,8 @@
 #include "field/kernel_set.h"
 #include "image/framebuffer.h"
 #include "particles/particle_set.h"
+#include "render/field_colors.h"
+#include "render/grid_fields.h"
 #include "render/stages.h"
 #include "samples/layers.h"
 #include "scene/scene.h"
@@ -54,8 +56,8 @@ enum class TreeUpdate { refitted, rebuilt };
 
 class Renderer {
  public:
-  /// Gathers the fields' kernels and what is drawn of `geometry`, and builds the tree; needs none
-  /// of the arguments afterwards.
+  /// Gathers the fields' kernels, grids and what is drawn of `geometry`, and builds the tree; needs
+  /// none of the arguments afterwards. Throws Error as GridSampler does.
   Renderer(const ParticleSet& particles, const std::vector<FieldSource>& fields,
            const GeometrySource& geometry = {});
 
@@ -84,8 +86,11 @@ class Renderer {
   void set_kernel(std::size_t field, const Kernel& kernel);
 
   const KernelSet& kernels() const { return *kernels_; }
+  const GridFields& grids() const { return grids_; }
   /// Bytes of balls and sticks besides those of kernels().
-  std::size_t surface_bytes() const { return surface_ ? surface_->bytes() : 0; }
+  std::size_t surface_bytes() const {
+    return surface_ ? surface_->bytes() + field_values_.bytes() : 0;
+  }
   /// Time that the last build or refit took.
   double build_ms() const { return build_ms_; }
 
@@ -99,8 +104,10 @@ class Renderer {
 
   std::unique_ptr<KernelSet> kernels_ = std::make_unique<KernelSet>();  ///< stays where it is
   std::optional<Surface> surface_;
+  FieldValues field_values_;
   std::vector<std::uint16_t> species_;  ///< of kernels, for isosurfaces that are coloured by it
-  KernelOrder order_;                   ///< empty until particles move
+  GridFields grids_;
+  KernelOrder order_;  ///< empty until particles move
   std::optional<CellGrid> cells_;
   double build_ms_ = 0;
 };

@@ -1,7 +1,6 @@
 #include "render/resolve.h"
 
 #include <algorithm>
-#include <cmath>
 #include <variant>
 
 #include "render/view_profile.h"
@@ -16,21 +15,6 @@ bool is_open(const Field& field) {
   if (std::holds_alternative<TransferFunction>(field.transfer_function)) return false;
   const auto* named = std::get_if<NamedTransferFunction>(&field.transfer_function);
   return named == nullptr || !named->range || !named->extinction;
-}
-
-/// The colour of a transfer function at a value.
-Color color_at(const TransferFunction& function, double value) {
-  const auto& points = function.points;
-  const auto place = [&](double v) { return function.log_scale ? std::log10(v) : v; };
-  const auto above = std::find_if(points.begin(), points.end(),
-                                  [&](const auto& point) { return point.value >= value; });
-  if (above == points.end()) return points.back().color;
-  if (above == points.begin()) return points.front().color;
-  const auto& a = *(above - 1);
-  const auto t =
-      static_cast<float>((place(value) - place(a.value)) / (place(above->value) - place(a.value)));
-  return {std::lerp(a.color.r, above->color.r, t), std::lerp(a.color.g, above->color.g, t),
-          std::lerp(a.color.b, above->color.b, t)};
 }
 
 std::vector<Color> colors_of(const Isosurface& isosurface, const ParticleSet& particles,
@@ -50,8 +34,8 @@ std::vector<Color> colors_of(const Isosurface& isosurface, const ParticleSet& pa
 
 ResolvedScene resolve(const Scene& scene, const ParticleSet& particles,
                       const std::vector<Field>& fields, const std::vector<FieldSource>& sources,
-                      const GeometrySource& geometry, const KernelSet& kernels,
-                      Progress* progress) {
+                      const GeometrySource& geometry, const KernelSet& kernels, Progress* progress,
+                      const GridFields& grids) {
   ResolvedScene resolved;
   resolved.render = scene.render;
   const double aspect = static_cast<double>(scene.render.width) / scene.render.height;
@@ -61,13 +45,13 @@ ResolvedScene resolve(const Scene& scene, const ParticleSet& particles,
   if (scene.render.step_size) {
     resolved.step_size = *scene.render.step_size;
   } else if (!fields.empty()) {
-    resolved.step_size = default_step_size(sources, kernels.box());
+    resolved.step_size = default_step_size(sources, volume_box(kernels, grids));
   }
   // Without rays where nothing is left to fit: it would be work for nothing.
   std::vector<RayProfiles> profiles(fields.size(), RayProfiles{{}, {0}, {}});
   if (std::any_of(fields.begin(), fields.end(), is_open)) {
-    profiles =
-        sample_view(kernels, resolved.camera, scene.render.width, scene.render.height, progress);
+    profiles = sample_view(kernels, resolved.camera, scene.render.width, scene.render.height,
+                           progress, grids);
   }
   const double opacity = fit_opacity(profiles, scene.render.background);
   for (std::size_t f = 0; f < fields.size(); ++f) {

@@ -34,10 +34,9 @@ struct ViewPoints {
 
 /// `rays_an_axis` squared rays over the image, `samples_per_ray` points on each. Both are jittered,
 /// or a crystal's planes would beat with them.
-ViewPoints spread_points(const KernelSet& kernels, const Camera& camera, double aspect,
-                         int rays_an_axis, int samples_per_ray) {
+ViewPoints spread_points(const Bounds3d& box, const Camera& camera, double aspect, int rays_an_axis,
+                         int samples_per_ray) {
   const CameraAxes axes = camera_axes(camera);
-  const Bounds3d box = kernels.box();
   std::mt19937 random(1);
   const auto jitter = [&] { return (random() + 0.5) / 4294967296.0; };
   ViewPoints view;
@@ -60,24 +59,25 @@ ViewPoints spread_points(const KernelSet& kernels, const Camera& camera, double 
 
 /// As many points as a second or so allows: heaps of kernels in one place must not make anyone
 /// wait.
-ViewPoints choose_points(const KernelSet& kernels, const Camera& camera, double aspect) {
+ViewPoints choose_points(const KernelSet& kernels, const Bounds3d& box, const Camera& camera,
+                         double aspect) {
   constexpr int few = 8, rays_an_axis = 32, samples_per_ray = 96;
   constexpr double max_kernels = 1e8;
-  ViewPoints trial = spread_points(kernels, camera, aspect, few, few);
+  ViewPoints trial = spread_points(box, camera, aspect, few, few);
   if (trial.points.empty()) return trial;
   const double cost =
       mean_kernels_tested(kernels, trial.points) * rays_an_axis * rays_an_axis * samples_per_ray;
   const double scale = std::min(1.0, std::cbrt(max_kernels / std::max(cost, 1.0)));
-  return spread_points(kernels, camera, aspect,
-                       std::max(few, static_cast<int>(scale * rays_an_axis)),
+  return spread_points(box, camera, aspect, std::max(few, static_cast<int>(scale * rays_an_axis)),
                        std::max(few, static_cast<int>(scale * samples_per_ray)));
 }
 
 }  // namespace
 
 std::vector<RayProfiles> sample_view(const KernelSet& kernels, const Camera& camera, int width,
-                                     int height, Progress* progress) {
-  const ViewPoints view = choose_points(kernels, camera, static_cast<double>(width) / height);
+                                     int height, Progress* progress, const GridFields& grids) {
+  const ViewPoints view = choose_points(kernels, volume_box(kernels, grids), camera,
+                                        static_cast<double>(width) / height);
   const std::size_t num_fields = kernels.fields.size(), num_points = view.points.size();
   std::vector<RayProfiles> profiles(num_fields, view.rays);
   for (RayProfiles& profile : profiles) profile.values.reserve(num_points);
@@ -86,7 +86,7 @@ std::vector<RayProfiles> sample_view(const KernelSet& kernels, const Camera& cam
   const std::size_t batch = num_points / 20 + 1;
   for (std::size_t begin = 0; begin < num_points; begin += batch) {
     const auto points = std::span(view.points).subspan(begin, std::min(batch, num_points - begin));
-    const std::vector<FieldSample> samples = probe(kernels, points);
+    const std::vector<FieldSample> samples = probe(kernels, grids, points, 0);
     for (std::size_t i = 0; i < samples.size(); ++i) {
       profiles[i % num_fields].values.push_back(static_cast<float>(samples[i].value));
     }

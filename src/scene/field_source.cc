@@ -10,6 +10,7 @@
 #include "particles/elements.h"
 #include "particles/radii.h"
 #include "particles/selection.h"
+#include "scene/grid_source.h"
 #include "scene/scene.h"
 
 namespace motes {
@@ -206,7 +207,7 @@ std::vector<float> shared_default_radii(const ParticleSet& particles,
                                         Progress* progress) {
   std::vector<bool> wanted;
   for (std::size_t f = 0; f < fields.size(); ++f) {
-    if (fields[f].radius) continue;
+    if (fields[f].radius || fields[f].grid) continue;
     wanted.resize(particles.size());
     for (const std::uint32_t i : sources[f].index) wanted[i] = true;
   }
@@ -280,14 +281,22 @@ void complete_source(const ParticleSet& particles, const Field& field,
 
 std::vector<FieldSource> make_field_sources(const ParticleSet& particles,
                                             const std::vector<Field>& fields, const Kernel& kernel,
-                                            Warnings& warnings, Progress* progress) {
-  if (particles.size() == 0) throw Error("the file has no particles to render");
+                                            Warnings& warnings, Progress* progress,
+                                            const std::vector<LoadedGrid>& grids) {
+  const auto is_of_particles = [](const Field& field) { return !field.grid; };
+  if (particles.size() == 0 && std::any_of(fields.begin(), fields.end(), is_of_particles)) {
+    throw Error("the file has no particles to render");
+  }
   std::vector<FieldSource> sources;
   sources.reserve(fields.size());
-  for (const Field& field : fields) sources.push_back(select_source(particles, field, kernel));
+  for (const Field& field : fields) {
+    sources.push_back(field.grid ? grid_source(field, grids)
+                                 : select_source(particles, field, kernel));
+  }
   const std::vector<float> default_radius =
       shared_default_radii(particles, fields, sources, warnings, progress);
   for (std::size_t f = 0; f < fields.size(); ++f) {
+    if (fields[f].grid) continue;
     complete_source(particles, fields[f], default_radius, sources[f], warnings);
   }
   return sources;
@@ -308,7 +317,7 @@ void color_by_species(Scene& scene, const ParticleSet& particles) {
   if (scene.fields.empty()) scene.fields.emplace_back().name = "all";
   Field& field = scene.fields.front();
   const bool open = field.transfer_function.index() == 0 && field.isosurfaces.empty() &&
-                    field.select == Selection{};
+                    field.select == Selection{} && !field.grid;
   if (scene.fields.size() > 1 || !open) return;
   field.transfer_function = NamedTransferFunction{std::string(species_colors), {}, {}, {}};
 }
@@ -352,7 +361,8 @@ void number_repeated_names(std::vector<Field>& fields) {
 
 }  // namespace
 
-std::vector<Field> expand_fields(const Scene& scene, const ParticleSet& particles) {
+std::vector<Field> expand_fields(const Scene& scene, const ParticleSet& particles,
+                                 const std::vector<LoadedGrid>& grids) {
   check_names(scene.fields, particles);
   std::vector<Field> wanted = scene.fields;
   if (wanted.empty()) {
@@ -362,6 +372,10 @@ std::vector<Field> expand_fields(const Scene& scene, const ParticleSet& particle
   std::vector<Field> fields;
   for (std::size_t k = 0; k < wanted.size(); ++k) {
     Field& field = wanted[k];
+    if (field.grid) {
+      expand_grid_field(field, k, grids, fields);
+      continue;
+    }
     if (field.name.empty()) field.name = fmt::format("field{}", k);
     const auto* named = std::get_if<NamedTransferFunction>(&field.transfer_function);
     if (named == nullptr || named->name != species_colors || particles.species.empty()) {

@@ -55,12 +55,15 @@ Scene fill_in(const Scene& scene, const std::vector<Field>& fields,
   for (std::size_t f = 0; f < fields.size(); ++f) {
     Field& field = filled.fields[f];
     const FieldSource& source = sources[f];
+    if (field.draws_volume()) {
+      field.transfer_function =
+          written_form(field.transfer_function, resolved.transfer_functions[f]);
+    }
+    if (field.grid) continue;
     if (!field.radius) field.radius = plain_number(source.radius);
     // Weights that differ and that nobody gave are masses.
     if (!field.weight) field.weight = plain_number(source.weight).value_or(std::string("mass"));
     field.normalise = source.normalise;
-    if (!field.draws_volume()) continue;
-    field.transfer_function = written_form(field.transfer_function, resolved.transfer_functions[f]);
   }
   return filled;
 }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/error.h"
 
@@ -188,7 +189,11 @@ TransferFunction one_color(const Color& color, const Range& range, double extinc
 double default_step_size(const std::vector<FieldSource>& fields, const Bounds3d& box) {
   std::vector<float> radii;
   double area = 0;
+  double step = std::numeric_limits<double>::infinity();
   for (const FieldSource& field : fields) {
+    if (field.grid) {
+      for (const Vector3d& edge : field.grid->steps) step = std::min(step, 0.5 * length(edge));
+    }
     for_some_radii(field, [&](float radius) {
       radii.push_back(radius);
       area += double{radius} * radius;
@@ -199,8 +204,8 @@ double default_step_size(const std::vector<FieldSource>& fields, const Bounds3d&
   const auto small = std::find_if(radii.begin(), radii.end(), [&](float radius) {
     return (below += double{radius} * radius) > small_area * area;
   });
-  const double radius = small == radii.end() ? radii.back() : *small;
-  return std::max(0.5 * radius, length(box.diagonal()) / max_samples);
+  if (!radii.empty()) step = std::min(step, 0.5 * (small == radii.end() ? radii.back() : *small));
+  return std::max(step, length(box.diagonal()) / max_samples);
 }
 
 double fit_opacity(const std::vector<RayProfiles>& profiles, const Color& background) {

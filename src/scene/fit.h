@@ -19,7 +19,7 @@ struct VisibleSphere {
 /// The fields' particles, or some of them where there are very many, each as large as its Gaussian
 /// is easily seen; those that are far larger than is typical (in the voids of a cosmological box)
 /// are taken for smaller.
-/// With them the balls of `geometry`.
+/// With them the balls of `geometry`, and the corners of grids as spheres of radius 0.
 std::vector<VisibleSphere> visible_spheres(const ParticleSet& particles,
                                            const std::vector<FieldSource>& fields,
                                            const GeometrySource& geometry = {});
@@ -33,7 +33,8 @@ Camera fit_camera(const Scene& scene, const std::vector<VisibleSphere>& spheres,
 
 /// Half of a small radius: of what all fields' Gaussians cover in a picture (radius squared), 5 %
 /// belongs to smaller ones. So it samples nearly all that is seen well, and a few tiny particles do
-/// not make every picture slow. But at most 2048 samples along the diagonal of `box`.
+/// not make every picture slow. Or half of the shortest edge of grids' voxels, if that is less. But
+/// at most 2048 samples along the diagonal of `box`.
 double default_step_size(const std::vector<FieldSource>& fields, const Bounds3d& box);
 
 /// Values of a field along rays of the view, at equal distances on each ray.

@@ -89,6 +89,18 @@ Bounds3d box_of(const std::vector<VisibleSphere>& spheres) {
   return {corner[0], corner[1]};
 }
 
+/// Adds the corners of all grids, so often that they are no strays.
+void add_corners(const std::vector<FieldSource>& fields, std::vector<VisibleSphere>& spheres) {
+  const std::size_t times = 1 + spheres.size() / stray_share;
+  for (const FieldSource& field : fields) {
+    if (!field.grid) continue;
+    const std::array<Point3d, 8> corners = corners_of(*field.grid);
+    for (std::size_t n = 0; n < times; ++n) {
+      for (const Point3d& corner : corners) spheres.push_back({corner, 0});
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<VisibleSphere> visible_spheres(const ParticleSet& particles,
@@ -110,12 +122,17 @@ std::vector<VisibleSphere> visible_spheres(const ParticleSet& particles,
     const std::size_t i = std::min(begin + random() % stride, geometry.index.size() - 1);
     spheres.push_back({particles.position(geometry.index[i]), geometry.radius[i]});
   }
+  if (spheres.empty()) {
+    add_corners(fields, spheres);
+    return spheres;
+  }
   std::vector<double> radii(spheres.size());
   std::transform(spheres.begin(), spheres.end(), radii.begin(),
                  [](const VisibleSphere& sphere) { return sphere.radius; });
   const auto middle = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
   std::nth_element(radii.begin(), middle, radii.end());
   for (VisibleSphere& sphere : spheres) sphere.radius = std::min(sphere.radius, large * *middle);
+  add_corners(fields, spheres);
   return spheres;
 }
 

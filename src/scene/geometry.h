@@ -19,8 +19,9 @@ namespace motes {
 /// (Cordero et al. 2008), angstrom.
 enum class ElementRadius { van_der_waals, covalent };
 
-/// What colours go by: the elements' customary ones, or a colour for each species.
-enum class ColorBy { element, species };
+/// What colours go by: the elements' customary ones, a colour for each species, or, of a particle
+/// that a field has, what the transfer function of the first that has it gives at its centre.
+enum class ColorBy { element, species, field };
 
 struct ColorByProperty {
   std::string property;
@@ -49,12 +50,16 @@ struct Geometry {
 struct GeometrySource {
   std::vector<std::uint32_t> index;  ///< into the ParticleSet, increasing
   std::vector<float> radius;         ///< of balls, one an index; file's length; 0: none
-  std::vector<std::uint32_t> srgb;   ///< 0xrrggbb, one an index
-  std::vector<Bond> bonds;           ///< between particles that are drawn
-  float stick_radius = 0;            ///< file's length
+  /// 0xrrggbb, one an index. See by_field().
+  std::vector<std::uint32_t> srgb;
+  std::vector<Bond> bonds;  ///< between particles that are drawn
+  float stick_radius = 0;   ///< file's length
 
   bool empty() const { return index.empty(); }
 };
+
+/// Whether a GeometrySource's colour is only for want of a field's.
+inline bool by_field(std::uint32_t srgb) { return (srgb & 0x1000000) != 0; }
 
 /// What `geometry` draws of `particles`: of several balls for a particle the last. Where sticks
 /// meet there is a ball of their radius at least. Particles whose position is not finite or whose

@@ -60,9 +60,10 @@ decltype(Geometry::color) read_color(const Value& value) {
   if (value.raw().is_object()) return read_color_by_property(value);
   if (value.raw() == "element") return ColorBy::element;
   if (value.raw() == "species") return ColorBy::species;
+  if (value.raw() == "field") return ColorBy::field;
   if (value.raw().is_string() && !color_from_text(value.raw().get<std::string>())) {
     value.expected(
-        "\"element\", \"species\", a colour such as \"#ff8000\", or "
+        "\"element\", \"species\", \"field\", a colour such as \"#ff8000\", or "
         "{\"property\": NAME}");
   }
   return value.color();
@@ -191,7 +192,9 @@ json to_json(const Geometry& geometry) {
   }
   if (!sticks) out["scale"] = geometry.scale;
   if (const auto* by = std::get_if<ColorBy>(&geometry.color)) {
-    out["color"] = *by == ColorBy::element ? "element" : "species";
+    out["color"] = *by == ColorBy::element   ? "element"
+                   : *by == ColorBy::species ? "species"
+                                             : "field";
   } else if (const auto* color = std::get_if<Color>(&geometry.color)) {
     out["color"] = color_to_json(*color);
   } else {

@@ -54,17 +54,10 @@ std::vector<std::uint32_t> colors_by_property(const ParticleSet& particles,
   if (color.range) std::tie(low, high) = *color.range;
   constexpr std::size_t steps = 256;
   std::vector<std::uint32_t> table(steps);
-  // The map's own points, read off at even places.
   const TransferFunction map = named_transfer_function(color.map, 0, 1, 1);
   for (std::size_t i = 0; i < steps; ++i) {
     const double place = static_cast<double>(i) / (steps - 1);
-    auto above = std::find_if(map.points.begin() + 1, map.points.end() - 1,
-                              [&](const auto& point) { return point.value >= place; });
-    const auto& a = *(above - 1);
-    const auto t = static_cast<float>((place - a.value) / (above->value - a.value));
-    table[i] = color_to_srgb({std::lerp(a.color.r, above->color.r, t),
-                              std::lerp(a.color.g, above->color.g, t),
-                              std::lerp(a.color.b, above->color.b, t)});
+    table[i] = color_to_srgb(color_at(map, place));
   }
   std::vector<std::uint32_t> colors;
   colors.reserve(index.size());
@@ -88,10 +81,13 @@ std::vector<std::uint32_t> colors_of(const ParticleSet& particles, const Geometr
     return std::vector<std::uint32_t>(index.size(), color_to_srgb(*color));
   }
   const auto of_species = colors_of_species(particles, std::get<ColorBy>(item.color));
+  const bool of_field = std::get<ColorBy>(item.color) == ColorBy::field;
   std::vector<std::uint32_t> colors(index.size(), 0xcccccc);
-  if (particles.species.empty()) return colors;
-  std::transform(index.begin(), index.end(), colors.begin(),
-                 [&](std::uint32_t i) { return of_species[particles.species[i]]; });
+  if (!particles.species.empty()) {
+    std::transform(index.begin(), index.end(), colors.begin(),
+                   [&](std::uint32_t i) { return of_species[particles.species[i]]; });
+  }
+  for (std::uint32_t& color : colors) color |= of_field ? 0x1000000u : 0u;
   return colors;
 }
 
@@ -182,7 +178,7 @@ std::vector<std::uint32_t> colors_of_species(const ParticleSet& particles, Color
   std::vector<std::uint32_t> colors;
   for (std::size_t s = 0; s < particles.species_names.size(); ++s) {
     const Element* element = find_element(particles.species_names[s]);
-    colors.push_back(by == ColorBy::element && element != nullptr ? element_color(*element)
+    colors.push_back(by != ColorBy::species && element != nullptr ? element_color(*element)
                                                                   : other_species_color(s));
   }
   return colors;

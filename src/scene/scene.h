@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -15,6 +16,7 @@
 #include <vector>
 
 #include "core/report.h"
+#include "particles/grid.h"
 #include "particles/particle_set.h"
 #include "scene/camera.h"
 #include "scene/clip_plane.h"
@@ -46,8 +48,22 @@ struct NamedTransferFunction {
 inline constexpr std::size_t max_fields = 64;
 inline constexpr std::size_t max_clip_planes = 16;
 
+/// What a field is that is a grid.
+struct FieldGrid {
+  std::filesystem::path path;  ///< empty: the scene's data
+  std::string array;           ///< of the file's; empty: all of them, one field each
+  Reconstruction interpolation = Reconstruction::trilinear;
+  bool operator==(const FieldGrid&) const = default;
+};
+/// Throws Error for an unknown name.
+Reconstruction interpolation_from_name(std::string_view name);
+std::string_view name_of(Reconstruction interpolation);
+
+/// A field of particles, or, with `grid`, of a grid, which has none of what concerns particles:
+/// `select`, `radius`, `weight`, `normalise` and kernels.
 struct Field {
   std::string name;
+  std::optional<FieldGrid> grid;
   Selection select;
   std::optional<NumberOrProperty> radius;  ///< nullopt: particles' default radii
   std::optional<NumberOrProperty> weight;  ///< nullopt: 1, or what the data suggest
@@ -102,7 +118,7 @@ struct RenderSettings {
 };
 
 struct Scene {
-  std::filesystem::path data_path;
+  std::filesystem::path data_path;  ///< empty: none, all fields are grids with files of their own
   std::uint64_t frame = 0;
   std::map<int, std::string> types;
   std::optional<Point3d> eye, target;  ///< nullopt: fitted to the data
@@ -116,11 +132,19 @@ struct Scene {
   bool operator==(const Scene&) const = default;
 };
 
+/// A grid that has been read for a scene.
+struct LoadedGrid {
+  std::filesystem::path path;  ///< as in FieldGrid
+  std::shared_ptr<const Grid> grid;
+};
+
 /// The particles of one field with all that its kernels need, checked: positions are finite, radii
 /// finite and > 0, weights finite. Particles that fail are left out, with a warning that counts
-/// them.
+/// them. Or the field's grid, and no particles.
 struct FieldSource {
   std::string name;
+  std::shared_ptr<const Grid> grid;                          ///< null: a field of particles
+  Reconstruction interpolation = Reconstruction::trilinear;  ///< of the grid
   Kernel kernel;
   bool normalise = false;
   std::vector<std::uint32_t> index;  ///< into the ParticleSet, increasing
@@ -167,11 +191,13 @@ std::string scene_to_json(const Scene& scene, const std::filesystem::path& direc
 /// particle has a size of its own: for molecules and solids, not for densities.
 void color_by_species(Scene& scene, const ParticleSet& particles);
 
-/// The fields that a scene comes to with these particles: one of all particles where it has none; a
-/// field with species_colors and several species becomes one field a species; all have names.
-/// Throws Error, which names the key ("fields[1].radius: what") where a field asks for species or
-/// properties that the particles do not have.
-std::vector<Field> expand_fields(const Scene& scene, const ParticleSet& particles);
+/// The fields that a scene comes to with these particles and grids: one of all particles where it
+/// has none; a field with species_colors and several species becomes one field a species, and one
+/// of a file with several grids, if it does not say which, one field a grid; all have names.
+/// Throws Error, which names the key ("fields[1].radius: what") where a field asks for species,
+/// properties or grids that the data do not have.
+std::vector<Field> expand_fields(const Scene& scene, const ParticleSet& particles,
+                                 const std::vector<LoadedGrid>& grids = {});
 
 /// The particles, radii and weights of each field. `kernel` is the scene's. Defaults: radius is
 /// such that the kernel's standard deviation is the particles' own size (has_sizes()), else the
@@ -179,8 +205,10 @@ std::vector<Field> expand_fields(const Scene& scene, const ParticleSet& particle
 /// Where the field gives neither and the particles have sizes of their own, `normalise` is on and
 /// the weight is "mass" if there is one: a density of mass or number. Reports `progress` where
 /// neighbours have to be found. Throws Error for unknown properties and where no particle is left.
+/// Fields that are grids share those of `grids`.
 std::vector<FieldSource> make_field_sources(const ParticleSet& particles,
                                             const std::vector<Field>& fields, const Kernel& kernel,
-                                            Warnings& warnings, Progress* progress = nullptr);
+                                            Warnings& warnings, Progress* progress = nullptr,
+                                            const std::vector<LoadedGrid>& grids = {});
 
 }  // namespace motes

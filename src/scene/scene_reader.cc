@@ -13,6 +13,7 @@
 #include "scene/geometry_json.h"
 #include "scene/isosurface_json.h"
 #include "scene/scene.h"
+#include "scene/style.h"
 
 namespace motes {
 namespace {
@@ -157,10 +158,43 @@ KernelChoice read_kernel(const Value& value, const std::filesystem::path& direct
   return kernel;
 }
 
+FieldGrid read_grid(const Value& value, const std::filesystem::path& directory) {
+  const auto path_in = [&](const Value& v) {
+    return (directory / v.text("the path of a grid")).lexically_normal();
+  };
+  FieldGrid grid;
+  if (value.raw().is_string()) {
+    grid.path = path_in(value);
+    return grid;
+  }
+  if (!value.raw().is_object()) {
+    value.expected("the path of a grid, or an object with \"path\", \"array\", \"interpolation\"");
+  }
+  value.check_keys({"path", "array", "interpolation"});
+  value.with("path", [&](const Value& v) { grid.path = path_in(v); });
+  value.with("array", [&](const Value& v) { grid.array = v.text("the name of a grid"); });
+  value.with("interpolation", [&](const Value& v) {
+    try {
+      grid.interpolation = interpolation_from_name(v.text("the name of an interpolation"));
+    } catch (const Error& error) {
+      v.fail(error.what());
+    }
+  });
+  return grid;
+}
+
 Field read_field(const Value& value, const std::filesystem::path& directory) {
-  value.check_keys({"name", "select", "radius", "weight", "normalise", "kernel",
+  value.check_keys({"name", "grid", "select", "radius", "weight", "normalise", "kernel",
                     "transfer_function", "isosurfaces"});
   Field field;
+  value.with("grid", [&](const Value& grid) {
+    field.grid = read_grid(grid, directory);
+    for (const char* key : {"select", "radius", "weight", "normalise", "kernel", "isosurfaces"}) {
+      value.with(key, [](const Value& v) {
+        v.fail("is for fields of particles; expected none, as the field is a grid");
+      });
+    }
+  });
   value.with("name", [&](const Value& v) { field.name = v.text("a name"); });
   value.with("select", [&](const Value& v) { field.select = read_selection(v); });
   value.with("radius", [&](const Value& v) { field.radius = read_number_or_property(v, true); });
@@ -195,8 +229,9 @@ void read_fields(const Value& value, const std::filesystem::path& directory, Sce
 
 void read_data(const Value& value, const std::filesystem::path& directory, Scene& scene) {
   value.check_keys({"path", "frame", "types"});
-  const std::filesystem::path path = value.at("path").text("the path of a file");
-  scene.data_path = (directory / path).lexically_normal();
+  value.with("path", [&](const Value& v) {
+    scene.data_path = (directory / v.text("the path of a file")).lexically_normal();
+  });
   value.with("frame", [&](const Value& v) {
     scene.frame = v.integer(0, std::numeric_limits<std::uint64_t>::max());
   });
@@ -318,13 +353,39 @@ void check_support_factors(const Value& fields, const Scene& scene) {
   }
 }
 
+/// Scenes may do without data only where all that they show is grids in files of their own.
+void check_data_path(const Value& root, const Scene& scene) {
+  const bool needs_data =
+      scene.fields.empty() || !scene.geometry.empty() ||
+      std::any_of(scene.fields.begin(), scene.fields.end(),
+                  [](const Field& field) { return !field.grid || field.grid->path.empty(); });
+  if (needs_data && scene.data_path.empty()) root.at("data").at("path");
+}
+
+/// After fields and geometry.
+void read_style(const Value& value, Scene& scene) {
+  const std::string name = value.text("the name of a style");
+  if (!scene.geometry.empty()) value.fail("expected either a style or geometry, found both");
+  bool draws_fields = false;
+  try {
+    draws_fields = style_draws_fields(name);
+  } catch (const Error& error) {
+    value.fail(error.what());
+  }
+  if (!scene.fields.empty() && !draws_fields) {
+    value.fail(fmt::format("expected no fields with the style '{}', which draws none of them", name));
+  }
+  apply_style(name, scene);
+}
+
 Scene read_root(const json& root, const std::filesystem::path& directory) {
   const Value value(root, "");
-  value.check_keys({"version", "data", "camera", "kernel", "fields", "geometry", "render"});
+  value.check_keys(
+      {"version", "data", "camera", "kernel", "fields", "geometry", "style", "render"});
   const Value version = value.at("version");
   if (version.raw() != json(1)) version.expected("1, the only version there is");
   Scene scene;
-  read_data(value.at("data"), directory, scene);
+  value.with("data", [&](const Value& v) { read_data(v, directory, scene); });
   value.with("camera", [&](const Value& v) { read_camera(v, scene); });
   value.with("kernel", [&](const Value& v) {
     KernelChoice kernel = read_kernel(v, directory);
@@ -337,7 +398,9 @@ Scene read_root(const json& root, const std::filesystem::path& directory) {
     check_support_factors(v, scene);
   });
   value.with("geometry", [&](const Value& v) { scene.geometry = read_geometry(v); });
+  value.with("style", [&](const Value& v) { read_style(v, scene); });
   value.with("render", [&](const Value& v) { read_render(v, scene.render); });
+  check_data_path(value, scene);
   return scene;
 }
 
@@ -349,6 +412,13 @@ Engine engine_from_name(std::string_view name) {
   if (name == "direct") return Engine::direct;
   if (name == "cells") return Engine::cells;
   throw unknown_name("engine", name, {"sweep", "coherent", "direct", "cells"});
+}
+
+Reconstruction interpolation_from_name(std::string_view name) {
+  if (name == "trilinear") return Reconstruction::trilinear;
+  if (name == "tricubic") return Reconstruction::tricubic;
+  if (name == "tricubic_smoothing") return Reconstruction::tricubic_smoothing;
+  throw unknown_name("interpolation", name, {"trilinear", "tricubic", "tricubic_smoothing"});
 }
 
 Scene parse_scene(std::string_view text, const std::filesystem::path& path) {

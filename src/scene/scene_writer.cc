@@ -59,9 +59,17 @@ json to_json(const KernelShape& shape, const std::filesystem::path& directory) {
   return out;
 }
 
+json to_json(const FieldGrid& grid, const std::filesystem::path& directory) {
+  json out{{"interpolation", name_of(grid.interpolation)}};
+  if (!grid.path.empty()) out["path"] = path_to_text(grid.path, directory);
+  if (!grid.array.empty()) out["array"] = grid.array;
+  return out;
+}
+
 json to_json(const Field& field, const std::filesystem::path& directory) {
   json out = json::object();
   if (!field.name.empty()) out["name"] = field.name;
+  if (field.grid) out["grid"] = to_json(*field.grid, directory);
   if (field.select != Selection{}) out["select"] = to_json(field.select);
   if (field.radius) out["radius"] = number_or_property_to_json(*field.radius);
   if (field.weight) out["weight"] = number_or_property_to_json(*field.weight);
@@ -104,7 +112,9 @@ json to_json(const RenderSettings& render) {
 }
 
 json data_to_json(const Scene& scene, const std::filesystem::path& directory) {
-  json out{{"path", path_to_text(scene.data_path, directory)}, {"frame", scene.frame}};
+  json out;
+  if (!scene.data_path.empty()) out["path"] = path_to_text(scene.data_path, directory);
+  out["frame"] = scene.frame;
   for (const auto& [number, name] : scene.types) out["types"][std::to_string(number)] = name;
   return out;
 }
@@ -152,6 +162,18 @@ std::string_view name_of(Engine engine) {
       return "direct";
     case Engine::cells:
       return "cells";
+  }
+  return "";
+}
+
+std::string_view name_of(Reconstruction interpolation) {
+  switch (interpolation) {
+    case Reconstruction::trilinear:
+      return "trilinear";
+    case Reconstruction::tricubic:
+      return "tricubic";
+    case Reconstruction::tricubic_smoothing:
+      return "tricubic_smoothing";
   }
   return "";
 }

@@ -125,4 +125,18 @@ TransferFunction named_transfer_function(std::string_view name, double low, doub
   return function;
 }
 
+Color color_at(const TransferFunction& function, double value) {
+  const auto& points = function.points;
+  const auto above = std::find_if(points.begin(), points.end(),
+                                  [&](const auto& point) { return point.value > value; });
+  if (!(value > points.front().value)) return points.front().color;
+  if (above == points.end()) return points.back().color;
+  const auto place = [&](double v) { return function.log_scale ? std::log10(v) : v; };
+  const auto& below = *(above - 1);
+  const auto t = static_cast<float>((place(value) - place(below.value)) /
+                                    (place(above->value) - place(below.value)));
+  return {std::lerp(below.color.r, above->color.r, t), std::lerp(below.color.g, above->color.g, t),
+          std::lerp(below.color.b, above->color.b, t)};
+}
+
 }  // namespace motes

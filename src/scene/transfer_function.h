@@ -26,6 +26,9 @@ struct TransferFunction {
   bool operator==(const TransferFunction&) const = default;
 };
 
+/// The colour at a value of the field; not a number: that of the first point.
+Color color_at(const TransferFunction& function, double value);
+
 /// Names of the built-in colour maps: viridis, magma, inferno, plasma, heat, grey.
 const std::vector<std::string>& color_map_names();
 

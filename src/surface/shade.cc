@@ -126,7 +126,7 @@ class TileShader {
         if (point.particle == ray.hit.particle && point.stick == ray.hit.stick) light = lights_[s];
       }
       if (has_shadows() && !has_soft_shadows()) light.lamp = hard_light(ray);
-      out.color[at] = phong(shading_.lighting, frame_.surface->colors.of(ray.hit.particle),
+      out.color[at] = phong(shading_.lighting, frame_.colors->of(ray.hit.particle),
                             Vector3d(ray.hit.normal), -unit(ray.direction), light);
     }
   }
@@ -168,7 +168,7 @@ RayGrid rays_of(const ImagePlane& plane, const Tile& tile, int margin) {
 
 SurfaceFrame make_surface_frame(const Surface& surface, const SurfaceView& view,
                                 const ImagePlane& plane, const SurfaceShading& shading) {
-  SurfaceFrame frame{&surface, view, plane, shading, {}, {}};
+  SurfaceFrame frame{&surface, &surface.colors, view, plane, shading, {}, {}};
   frame.sky = cosine_directions(shading.occlusion_samples, shading.seed);
   if (auto& direction = frame.shading.lighting.direction) {
     *direction = normalize(*direction);

@@ -44,6 +44,7 @@ struct SurfaceShading {
 /// Everything that a frame's tiles share; made once a frame, then only read.
 struct SurfaceFrame {
   const Surface* surface = nullptr;
+  const SurfaceColors* colors = nullptr;  ///< for the surface's particles
   SurfaceView view;
   ImagePlane plane;
   SurfaceShading shading;
@@ -52,6 +53,7 @@ struct SurfaceFrame {
   std::vector<Vector3f> sky, lamp;
 };
 
+/// In the surface's own colours.
 SurfaceFrame make_surface_frame(const Surface& surface, const SurfaceView& view,
                                 const ImagePlane& plane, const SurfaceShading& shading);
 

@@ -63,6 +63,10 @@ struct SurfaceColors {
   UninitializedVector<std::uint32_t> srgb;
 
   Color of(std::size_t particle) const;
+  /// Sets a particle's in `srgb`, to 0xrrggbb.
+  void set_srgb(std::size_t particle, std::uint32_t rrggbb) {
+    srgb[particle] = (rrggbb & 0xff) << 16 | (rrggbb & 0xff00) | (rrggbb >> 16 & 0xff);
+  }
   std::size_t bytes() const { return index.size() + srgb.size() * sizeof(std::uint32_t); }
 };
 

@@ -78,6 +78,45 @@ TEST_F(Bench, Table1NamesSizesAndBuildTimes) {
   EXPECT_THAT(workspace_.read("out/bench/table1.svg"), StartsWith("<svg "));
 }
 
+TEST_F(Bench, QualityComesWithFinerGrids) {
+  measure("quality");
+  const auto table = result("quality");
+  ASSERT_EQ(table["rows"].size(), 10U);
+  EXPECT_EQ(table["rows"][0]["reconstruction"], "field");
+  EXPECT_EQ(table["rows"][0]["rms"], 0);
+  double last = 1;
+  for (std::size_t i = 1; i < 10; i += 3) {
+    const double trilinear = table["rows"][i]["rms"], tricubic = table["rows"][i + 1]["rms"];
+    const double smoothing = table["rows"][i + 2]["rms"];
+    EXPECT_LT(trilinear, last);
+    EXPECT_LT(tricubic, trilinear);
+    EXPECT_LT(trilinear, smoothing);
+    last = trilinear;
+  }
+  // Voxels of a quarter of an angstrom show the field, but for the kernels' jumps at their ends.
+  EXPECT_LT(last, 0.02);
+  EXPECT_GT(table["rows"][7]["bytes"].get<double>(), 1e8);
+  for (const auto& row : table["rows"]) {
+    EXPECT_TRUE(workspace_.exists(row["picture"].get<std::string>()));
+  }
+  EXPECT_TRUE(workspace_.exists("out/bench/quality_figure1.png"));
+}
+
+TEST_F(Bench, KernelsAreSampledAtTheSamePlaces) {
+  measure("kernels --scenes zeolite");
+  const auto table = result("kernels");
+  ASSERT_EQ(table["rows"].size(), 16U);
+  for (std::size_t i = 0; i < 16; ++i) {
+    const auto& row = table["rows"][i];
+    const auto& gaussian = table["rows"][i < 8 ? 0 : 8];
+    EXPECT_EQ(gaussian["kernel"], "gaussian");
+    EXPECT_EQ(row["lit"]["samples"], gaussian["unlit"]["samples"]);
+    EXPECT_EQ(row["lit_over_gaussian"],
+              row["lit"]["frame_ms"].get<double>() / gaussian["lit"]["frame_ms"].get<double>());
+  }
+  EXPECT_THAT(workspace_.read("out/bench/kernels.svg"), StartsWith("<svg "));
+}
+
 TEST_F(Bench, Table2ComparesEnginesInBothViews) {
   const Outcome outcome = measure("table2 --scenes nanobowl,zeolite");
   EXPECT_EQ(outcome.err, "");
@@ -100,6 +139,8 @@ TEST_F(Bench, Table2ComparesEnginesInBothViews) {
     EXPECT_EQ(row["lit_over_unlit"], row["lit"]["sweep"]["frame_ms"].get<double>() /
                                          row["unlit"]["sweep"]["frame_ms"].get<double>());
     EXPECT_GT(row["direct"]["fps"].get<double>(), 0);
+    EXPECT_GT(row["structured"]["fps"].get<double>(), 0);
+    EXPECT_GT(row["structured_bytes"].get<double>(), 1e5);
     // Half-transparent, as it is meant to be.
     EXPECT_GT(row["mean_opacity"].get<double>(), 0.2);
     EXPECT_LT(row["mean_opacity"].get<double>(), 0.95);
@@ -115,6 +156,7 @@ TEST_F(Bench, Table2ComparesEnginesInBothViews) {
   EXPECT_TRUE(table["rows"][0]["paper_cpu_fps"].is_null());
   EXPECT_EQ(table["rows"][2]["paper_cpu_fps"], 3.65);
   EXPECT_EQ(table["rows"][3]["paper_cpu_fps"], 2.53);
+  EXPECT_EQ(table["rows"][3]["paper_structured_cpu_fps"], 4.02);
   EXPECT_THAT(workspace_.read("out/bench/table2.svg"), HasSubstr("nanobowl close"));
 }
 

@@ -18,7 +18,7 @@ using testing::HasSubstr;
 using testing::StartsWith;
 
 TEST_F(CommandLine, HelpTeachesWithExamples) {
-  for (const std::string command : {"", "bench ", "info ", "probe ", "render "}) {
+  for (const std::string command : {"", "bench ", "info ", "probe ", "render ", "resample "}) {
     const Outcome outcome = run(command + "--help");
     EXPECT_EQ(outcome.status, 0);
     EXPECT_EQ(outcome.err, "");

@@ -8,8 +8,8 @@
 #include <limits>
 
 #include "core/error.h"
-#include "grid/field_truth.h"
 #include "grid/grids.h"
+#include "reference/grid.h"
 
 namespace motes {
 namespace {
@@ -81,7 +81,7 @@ TEST_P(Shapes, AreThoseOfTheTruth) {
     for (const Reconstruction reconstruction : all_reconstructions) {
       SCOPED_TRACE(static_cast<int>(reconstruction) + (periodic ? 10 : 0));
       const GridSampler sampler(grid, reconstruction);
-      const FieldTruth truth(grid, reconstruction);
+      const reference::GridField truth(grid, reconstruction);
       for (const auto& x : hull_points(sampler, 100, 5)) {
         const auto sample = sampler.sample(point_at(sampler, x));
         ASSERT_TRUE(sample);

@@ -3,27 +3,15 @@
 
 #include <array>
 #include <limits>
-#include <string>
 #include <utility>
 
-#include "grid/field_truth.h"
 #include "grid/grids.h"
+#include "grid/instruction_sets.h"
 #include "grid/sample_points.h"
-#include "render/render_tile.h"
+#include "reference/grid.h"
 
 namespace motes {
 namespace {
-
-/// Runs `f` on every instruction set that this machine has.
-template <class F>
-void on_all_instruction_sets(F&& f) {
-  for (const std::string& name : instruction_sets()) {
-    SCOPED_TRACE(name);
-    force_instruction_set(name);
-    f();
-  }
-  force_instruction_set("");
-}
 
 PointSamples as_floats(const std::vector<std::array<double, 3>>& points) {
   PointSamples out;
@@ -42,7 +30,7 @@ TEST_P(HotPath, IsTheTruth) {
     const Grid grid = random_grid(GetParam(), periodic, 3);
     for (const Reconstruction reconstruction : all_reconstructions) {
       const GridSampler sampler(grid, reconstruction);
-      const FieldTruth truth(grid, reconstruction);
+      const reference::GridField truth(grid, reconstruction);
       PointSamples points = as_floats(hull_points(sampler, 333, 5));
       std::vector<std::array<double, 4>> expected;
       for (std::size_t n = 0; n < points.x.size(); ++n) {

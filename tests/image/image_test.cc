@@ -178,5 +178,13 @@ TEST(CompareImages, NaNIsNeverAlike) {
   EXPECT_TRUE(std::isinf(compare_images(a, a).rms));
 }
 
+TEST(CompareImages, PeakSignalToNoiseIsInDecibels) {
+  const DisplayImage a{2, 1, {0, 10, 20, 30, 40, 50}};
+  EXPECT_EQ(peak_signal_to_noise(a, a), std::numeric_limits<double>::infinity());
+  // All off by 25.5, a tenth of the range, would be 20 dB; here two of six are off by 30 and 40.
+  const DisplayImage b{2, 1, {30, 10, 20, 30, 40, 10}};
+  EXPECT_NEAR(peak_signal_to_noise(a, b), 20 * std::log10(255 / std::sqrt(2500. / 6)), 1e-12);
+}
+
 }  // namespace
 }  // namespace motes

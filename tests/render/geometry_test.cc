@@ -52,6 +52,58 @@ TEST(DrawnOnly, ParticlesAddNothingToTheFields) {
   }
 }
 
+TEST(Geometry, HasTheColoursOfTheFirstFieldThatHasTheParticle) {
+  // Three balls far apart: of both fields, of the second alone and of none.
+  PlainScene s = plain_scene({{-4, 0, 0}, {0, 0, 0}, {4, 0, 0}}, 16);
+  FieldSource second = s.scene.fields[0];
+  s.scene.fields[0].index = {0};
+  second.index = {0, 1};
+  second.name = "second";
+  second.weight = {0.75F};
+  s.scene.fields.push_back(second);
+  s.scene.transfer_functions = {{{{0, {0, 1, 0}, 0}, {2, {1, 0, 0}, 0}}},
+                                {{{0, {0, 0, 1}, 0}, {1, {1, 1, 0}, 0}}}};
+  s.scene.render.surface = {1, 0, {}, false, 0};
+  s.scene.render.lighting.enabled = false;
+  GeometrySource geometry = balls({0, 1, 2}, 1.5F);
+  for (std::uint32_t& color : geometry.srgb) color |= 0x1000000;
+  const Renderer renderer(s.particles, s.scene.fields, geometry);
+  const Framebuffer image = renderer.render(s.scene, {});
+  const auto expect_color = [&](double x, const Color& expected) {
+    const double scale =
+        image.height / (2 * 16 * std::tan(s.scene.camera.fov_degrees / 360 * M_PI));
+    const float* const c =
+        image.pixel(static_cast<int>(image.width / 2.0 + x * scale), image.height / 2);
+    EXPECT_NEAR(c[0], expected.r, 0.01) << x;
+    EXPECT_NEAR(c[1], expected.g, 0.01) << x;
+    EXPECT_NEAR(c[2], expected.b, 0.01) << x;
+  };
+  expect_color(-4, {0.5F, 0.5F, 0});
+  expect_color(0, {0.75F, 0.75F, 0.25F});
+  expect_color(4, color_from_srgb(0x3366cc));
+}
+
+TEST(Geometry, IsCutByClipPlanes) {
+  PlainScene s = plain_scene(some_points(), 16);
+  s.scene.render.clip_planes = {{{2, 1, -1}, 1.1}, {{0, 0, 1}, 1.5}};
+  std::vector<std::uint32_t> all, left;
+  for (std::uint32_t i = 0; i < s.particles.size(); ++i) {
+    all.push_back(i);
+    const Vector3d x = s.particles.position(i) - Point3d{};
+    if (dot({2, 1, -1}, x) <= 1.1 * std::sqrt(6) && x.z <= 1.5) left.push_back(i);
+  }
+  ASSERT_GT(left.size(), 10u);
+  ASSERT_LT(left.size(), 50u);
+  const auto render_balls = [&](const std::vector<std::uint32_t>& index) {
+    return Renderer(s.particles, {}, balls(index, 0.7F)).render(s.scene, {});
+  };
+  s.scene.transfer_functions.clear();
+  const Framebuffer cut = render_balls(all);
+  s.scene.render.clip_planes.clear();
+  EXPECT_EQ(cut.rgba, render_balls(left).rgba);
+  EXPECT_NE(cut.rgba, render_balls(all).rgba);
+}
+
 /// A ball in front of a lone kernel, and one behind it.
 TEST(Geometry, CutsTheVolumeWhereRaysMeetIt) {
   PlainScene s = plain_scene({{0, 0, 0}, {0, 0, 3}, {0.3, 0, -3}}, 16);

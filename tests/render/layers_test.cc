@@ -76,12 +76,14 @@ LayerSource source_of(const PixelLayers& layers, int width, double length_scale)
 
 class Layers : public testing::TestWithParam<int> {};
 
-TEST_P(Layers, CutTheSamplesOfEveryEngine) {
+/// Scenes of 12 seeds.
+void check_layers(int block, RandomScene (*draw_scene)(std::uint32_t)) {
   for (int i = 0; i < 12; ++i) {
-    const auto seed = static_cast<std::uint32_t>(12 * GetParam() + i);
-    const RandomScene random = random_scene(seed);
+    const auto seed = static_cast<std::uint32_t>(12 * block + i);
+    const RandomScene random = draw_scene(seed);
     const Renderer renderer(random.particles, random.scene.fields);
-    const PixelLayers layers = random_layers(random.scene, renderer.kernels().box(), seed);
+    const Bounds3d box = volume_box(renderer.kernels(), renderer.grids());
+    const PixelLayers layers = random_layers(random.scene, box, seed);
     const reference::Image truth = reference::render(random.particles, random.scene, layers);
     const Framebuffer expected = to_framebuffer(truth);
     const LayerSource source =
@@ -96,6 +98,10 @@ TEST_P(Layers, CutTheSamplesOfEveryEngine) {
     }
   }
 }
+
+TEST_P(Layers, CutTheSamplesOfEveryEngine) { check_layers(GetParam(), random_scene); }
+
+TEST_P(Layers, CutTheSamplesOfGrids) { check_layers(GetParam(), random_grid_scene); }
 
 INSTANTIATE_TEST_SUITE_P(Blocks, Layers, testing::Range(0, 6));
 

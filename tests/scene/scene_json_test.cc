@@ -107,6 +107,27 @@ TEST(ParseScene, NeedsVersionAndPathAlone) {
             "dir/s.json: data: expected the key 'path'");
 }
 
+TEST(ParseScene, ReadsGrids) {
+  const Scene scene = parse(R"({"version": 1, "fields": [
+      {"grid": "../a.cube"},
+      {"name": "b", "grid": {"path": "b.nrrd", "array": "heat", "interpolation": "tricubic"}}]})");
+  Scene expected;
+  expected.fields.resize(2);
+  expected.fields[0].grid = {"a.cube", "", Reconstruction::trilinear};
+  expected.fields[1].name = "b";
+  expected.fields[1].grid = {"dir/b.nrrd", "heat", Reconstruction::tricubic};
+  EXPECT_EQ(scene, expected);
+  EXPECT_EQ(parse(with_body(R"("fields": [{"grid": {}}])")).fields[0].grid, FieldGrid{});
+}
+
+TEST(ParseScene, NeedsDataForAllButGridsOfTheirOwn) {
+  for (const std::string rest :
+       {R"("fields": [{"grid": {"array": "a"}}])", R"("fields": [{"grid": "a"}, {}])",
+        R"("fields": [{"grid": "a"}], "geometry": [{"type": "spheres"}])", R"("fields": [])"}) {
+    EXPECT_EQ(message_of(R"({"version": 1, )" + rest + "}"), "dir/s.json: expected the key 'data'");
+  }
+}
+
 TEST(ParseScene, NamesTheNearestKey) {
   EXPECT_EQ(message_of(with_body(R"("camra": {})")),
             "dir/s.json: unknown key 'camra'; did you mean 'camera'?");
@@ -117,6 +138,20 @@ TEST(ParseScene, NamesTheNearestKey) {
   EXPECT_EQ(message_of(with_body(R"("fields": [{"select": {"colour": 1}}])")),
             "dir/s.json: fields[0].select: unknown key 'colour'; there are: species, index, "
             "expression; the nearest known key is 'index'");
+}
+
+TEST(ParseScene, StylesAreGeometry) {
+  const auto parse_style = [](const std::string& rest) {
+    return parse(with_body("\"style\": " + rest));
+  };
+  EXPECT_TRUE(parse_style(R"("spheres")").fields.empty());
+  ASSERT_EQ(parse_style(R"("spheres")").geometry.size(), 1u);
+  const Scene both = parse_style(R"("volume+balls", "fields": [{"name": "a"}])");
+  ASSERT_EQ(both.fields.size(), 1u);
+  EXPECT_EQ(both.fields[0].name, "a");
+  ASSERT_EQ(both.geometry.size(), 2u);
+  EXPECT_EQ(both.geometry[1].type, Geometry::Type::sticks);
+  EXPECT_EQ(parse_style(R"("volume")").fields.size(), 1u);
 }
 
 TEST(ParseScene, NamesTheLineOfBrokenJson) {
@@ -154,6 +189,33 @@ TEST_P(Refuses, WithOneClearLine) {
 INSTANTIATE_TEST_SUITE_P(
     ParseScene, Refuses,
     testing::Values(
+        Refusal{R"("fields": [{"grid": 1}])", "fields[0].grid: expected the path of a grid"},
+        Refusal{R"("fields": [{"grid": {"file": "a"}}])", "fields[0].grid: unknown key 'file'"},
+        Refusal{R"("fields": [{"grid": {"interpolation": "linear"}}])",
+                "fields[0].grid.interpolation: unknown interpolation 'linear'; did you mean "
+                "'trilinear'?"},
+        Refusal{R"("fields": [{}, {"grid": "a", "select": {}}])",
+                "fields[1].select: is for fields "
+                "of particles; expected none"},
+        Refusal{R"("fields": [{"grid": "a", "radius": 1}])", "fields[0].radius: is for fields of"},
+        Refusal{R"("fields": [{"grid": "a", "weight": 1}])", "fields[0].weight: is for fields of"},
+        Refusal{R"("fields": [{"grid": "a", "normalise": true}])", "fields[0].normalise: is for"},
+        Refusal{R"("fields": [{"grid": "a", "kernel": {}}])", "fields[0].kernel: is for fields of"},
+        Refusal{R"("fields": [{"grid": "a", "isosurfaces": []}])",
+                "fields[0].isosurfaces: is for fields of particles"},
+        Refusal{R"("fields": [{"isosurfaces": {"value": 1}}])",
+                "fields[0].isosurfaces: expected an array of isosurfaces"},
+        Refusal{R"("fields": [{"isosurfaces": [{"value": 1e999}]}])", ""},
+        Refusal{R"("fields": [{"isosurfaces": [{"color": "element"}]}])",
+                "fields[0].isosurfaces[0]: expected the key 'value'"},
+        Refusal{R"("fields": [{"isosurfaces": [{"value": "x"}]}])",
+                "fields[0].isosurfaces[0].value: expected a number"},
+        Refusal{R"("fields": [{"isosurfaces": [{"value": 1, "opacity": 1.5}]}])",
+                "fields[0].isosurfaces[0].opacity: expected a number from 0 to 1"},
+        Refusal{R"("fields": [{"isosurfaces": [{"value": 1, "color": "elements"}]}])",
+                "fields[0].isosurfaces[0].color: expected \"element\", \"species\" or a colour"},
+        Refusal{R"("style": "surface", "fields": [{}])",
+                "style: expected no fields with the style 'surface'"},
         Refusal{R"("camera": {"eye": [0, 1]})",
                 "camera.eye: expected an array of three numbers, found an array of 2"},
         Refusal{R"("camera": {"eye": [0, 1, "2"]})",
@@ -230,6 +292,15 @@ INSTANTIATE_TEST_SUITE_P(
                 "render.lighting.direction: a direction must not be zero"},
         Refusal{R"("render": {"lighting": false})",
                 "render.lighting: expected an object such as {\"enabled\": false}, found false"},
+        Refusal{R"("render": {"clip_planes": {}})", "render.clip_planes: expected an array of pl"},
+        Refusal{R"("render": {"clip_planes": [{"distance": 1}]})",
+                "render.clip_planes[0]: expected the key 'normal'"},
+        Refusal{R"("render": {"clip_planes": [{"normal": [0, 0, 0]}]})",
+                "render.clip_planes[0].normal: a direction must not be zero"},
+        Refusal{R"("style": "sphere")", "style: unknown style 'sphere'; did you mean 'spheres'?"},
+        Refusal{R"("style": "spheres", "fields": [{}])", "style: expected no fields with the st"},
+        Refusal{R"("style": "volume", "geometry": [{"type": "spheres"}])",
+                "style: expected either a style or geometry, found both"},
         Refusal{R"("render": {"background": "blakc"})", "render.background: expected a colour"},
         Refusal{R"("render": {"background": [0.5, 128, 0]})",
                 "render.background: expected \"black\", \"white\", \"#rrggbb\" (sRGB) or [r, g, b] "
@@ -301,6 +372,15 @@ decltype(Field::transfer_function) random_transfer_function() {
 Field random_field(int number) {
   Field field;
   if (*rc::gen::arbitrary<bool>()) field.name = fmt::format("{}{}", random_text(), number);
+  field.transfer_function = random_transfer_function();
+  if (*rc::gen::inRange(0, 4) == 0) {
+    field.grid.emplace();
+    if (*rc::gen::arbitrary<bool>()) field.grid->path = "/data/runs/b c.nrrd";
+    if (*rc::gen::arbitrary<bool>()) field.grid->array = random_text();
+    field.grid->interpolation = *rc::gen::element(
+        Reconstruction::trilinear, Reconstruction::tricubic, Reconstruction::tricubic_smoothing);
+    return field;
+  }
   if (*rc::gen::arbitrary<bool>()) field.select.species = {random_text(), random_text()};
   field.select.index = maybe([] {
     const auto first = *rc::gen::arbitrary<std::uint32_t>();
@@ -314,7 +394,12 @@ Field random_field(int number) {
   field.kernel_scale = maybe([] { return random_double(-30, 30); });
   field.kernel_shape = maybe([] { return KernelShape{KernelType::quintic_spline, {}}; });
   if (field.kernel_shape) field.support_factor.reset();
-  field.transfer_function = random_transfer_function();
+  if (*rc::gen::arbitrary<bool>()) {
+    field.isosurfaces = {{random_double(-3, 3), {}, 1},
+                         {0.5, ColorBy::element, 0.25},
+                         {0.75, ColorBy::species, 0},
+                         {1, Color{0.25F, 0, 1}, 0.5}};
+  }
   return field;
 }
 
@@ -338,12 +423,16 @@ RC_GTEST_PROP(SceneToJson, ReadsBackEqual, ()) {
     balls.radius = *rc::gen::element<decltype(Geometry::radius)>(ElementRadius::covalent, 2.5,
                                                                  std::string("size"));
     balls.color = *rc::gen::element<decltype(Geometry::color)>(
-        ColorBy::species, Color{0.25F, 0, 1}, ColorByProperty{"v", "magma", {{1, 2}}});
+        ColorBy::species, ColorBy::field, Color{0.25F, 0, 1},
+        ColorByProperty{"v", "magma", {{1, 2}}});
     sticks.type = Geometry::Type::sticks;
     sticks.radius = 0.25;
     sticks.bonds = BondSource::distance;
     scene.geometry = {balls, sticks};
     scene.render.surface = {2, 64, 3.5, false, 0};
+  }
+  for (int n = *rc::gen::inRange(0, 3); n > 0; --n) {
+    scene.render.clip_planes.push_back({{0, -1, 0.25 * n}, random_double(-30, 30)});
   }
   scene.kernel = {random_double(1, 30), random_double(-30, 30)};
   if (*rc::gen::arbitrary<bool>()) {

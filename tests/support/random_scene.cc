@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <memory>
 #include <random>
 #include <tuple>
 #include <utility>
@@ -270,6 +272,78 @@ RandomScene random_scene(std::uint32_t seed) {
       extent.center.z, view, scene.render.width, scene.render.height, scene.step_size,
       scene.render.termination_opacity, scene.render.lighting.enabled ? "lit" : "unlit",
       scene.render.clip_planes.size());
+  return result;
+}
+
+namespace {
+
+/// A grid somewhere around `center`, about as large as `size`: noise, waves, or one value.
+std::shared_ptr<const Grid> draw_grid(Draw& draw, const Point3d& center, double size,
+                                      double value_scale) {
+  Grid grid;
+  grid.name = "grid";
+  grid.periodic = draw.chance(0.3);
+  const auto most = draw.chance(0.5) ? 8 : 30;
+  for (std::size_t& n : grid.dims) n = static_cast<std::size_t>(2 + draw.below(most - 1));
+  if (grid.periodic && draw.chance(0.3)) grid.dims[1] = 1;
+  const Vector3d sides[3] = {{2 * size, 0, 0}, {0, 2 * size, 0}, {0, 0, 2 * size}};
+  const double skew = draw.chance(0.5) ? 0 : 0.5;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const Vector3d edge = draw.uniform(0.4, 1.3) * sides[a] + skew * size * draw.in_cube();
+    grid.steps[a] = edge / static_cast<double>(grid.dims[a]);
+  }
+  if (draw.chance(0.3)) std::swap(grid.steps[0], grid.steps[2]);  // left-handed, another order
+  grid.origin = center - size * Vector3d{1, 1, 1} + 0.5 * size * draw.in_cube();
+  grid.values.resize(grid.size());
+  const int kind = draw.below(5);
+  const Vector3d wave = draw.in_cube();
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    const auto x = static_cast<double>(i % grid.dims[0]);
+    const auto y = static_cast<double>(i / grid.dims[0] % grid.dims[1]);
+    const auto z = static_cast<double>(i / grid.dims[0] / grid.dims[1]);
+    double value = 1;
+    if (kind == 1) value = draw.uniform(0, 1);
+    if (kind == 2) value = draw.uniform(-1, 1);
+    if (kind > 2) value = 0.5 + 0.5 * std::sin(wave.x * x + wave.y * y + wave.z * z);
+    if (kind == 4) value = std::max(0., value - 0.5);  // much of it is empty
+    grid.values[i] = static_cast<float>(value_scale * value);
+  }
+  if (draw.chance(0.1)) grid.values[grid.size() / 2] = std::numeric_limits<float>::quiet_NaN();
+  return std::make_shared<const Grid>(std::move(grid));
+}
+
+}  // namespace
+
+RandomScene random_grid_scene(std::uint32_t seed) {
+  RandomScene result = random_scene(seed);
+  Draw draw(seed + 1000000);
+  ResolvedScene& scene = result.scene;
+  const Bounds3d box = result.particles.bounds();
+  const Vector3d sides = box.diagonal();
+  const double size = 0.5 * std::max({sides.x, sides.y, sides.z});
+  // (a lone particle has no extent)
+  const double extent = size > 0 ? size : 0.3 * length(scene.camera.target - scene.camera.eye);
+  if (seed % 2 == 0) {
+    scene.fields.clear();
+    scene.transfer_functions.clear();
+  }
+  const int num_grids = 1 + draw.below(3);
+  for (int g = 0; g < num_grids; ++g) {
+    const double value_scale = draw.chance(0.7) ? 1 : draw.log_uniform(1e-20, 1e20);
+    FieldSource source;
+    source.name = fmt::format("grid{}", g);
+    source.grid = g > 0 && draw.chance(0.2) && scene.fields.front().grid
+                      ? scene.fields.front().grid
+                      : draw_grid(draw, box.center(), extent, value_scale);
+    source.interpolation = static_cast<Reconstruction>(draw.below(3));
+    const auto at = draw.below(static_cast<int>(scene.fields.size()) + 1);
+    scene.transfer_functions.insert(
+        scene.transfer_functions.begin() + at,
+        draw_transfer_function(draw, value_scale, extent * draw.uniform(0.5, 2)));
+    scene.fields.insert(scene.fields.begin() + at, std::move(source));
+  }
+  scene.step_size = std::max(scene.step_size, extent / 40);
+  result.description += fmt::format(", {} grids, {} fields in all", num_grids, scene.fields.size());
   return result;
 }
 

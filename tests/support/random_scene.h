@@ -21,4 +21,8 @@ struct RandomScene {
 /// picture.
 RandomScene random_scene(std::uint32_t seed);
 
+/// The same with one to three fields that are grids, of any shape, partly in the scene's box, among
+/// the fields of particles or, in every other scene, in their place.
+RandomScene random_grid_scene(std::uint32_t seed);
+
 }  // namespace motes

@@ -28,9 +28,11 @@ void run_table1(const BenchJob& job);
 void run_build(const BenchJob& job);
 void run_table2(const BenchJob& job);
 void run_fields(const BenchJob& job);
+void run_kernels(const BenchJob& job);
 void run_limit(const BenchJob& job);
 void run_lattice(const BenchJob& job);  ///< makes its own particles, as radii does
 void run_radii(const BenchJob& job);
+void run_quality(const BenchJob& job);  ///< of a part of sio2
 void run_threads(const BenchJob& job);
 void run_spheres(const BenchJob& job);
 void run_fig6(const BenchJob& job);

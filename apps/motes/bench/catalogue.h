@@ -27,6 +27,8 @@ struct PaperFigures {
   double build_s = 0;           ///< one thread of a Xeon E5-2680
   std::optional<FarClose> cpu;  ///< its 16 cores, two Xeon E5-2680
   std::optional<FarClose> mic;  ///< its Xeon Phi SE10P
+  // The same of structured volumes, one voxel an angstrom.
+  std::optional<FarClose> structured_cpu = std::nullopt, structured_mic = std::nullopt;
 };
 
 struct BenchScene {

@@ -29,8 +29,10 @@ constexpr const char* examples =
   table2    frames per second of all engines, far and close, beside the paper's Table 2
   build     build times and memory of the tree, beside Embree's
   fields    what more fields cost: particles shared out among them, or all in two
+  kernels   frame times of kernels of other shapes beside those of Gaussians
   limit     what part of the machine's peak the sweep reaches, and where the rest goes
   lattice   frame times of lattices from 91 thousand to 82 million particles, unlit
+  quality   the field of a fracture beside grids of it: errors of their pictures, memory, times
   radii     time of a kernel evaluation where radii differ by orders of magnitude
   threads   frame times of several threads beside those of one
   spheres   balls by the one tree, beside Embree's sphere geometry
@@ -61,8 +63,10 @@ constexpr Benchmark benchmarks[] = {{"scenes", run_scenes},
                                     {"table2", run_table2},
                                     {"build", run_build},
                                     {"fields", run_fields, {"zeolite", "tryptophan", "anp3"}},
+                                    {"kernels", run_kernels, {"nanobowl", "nanosphere_90k"}},
                                     {"limit", run_limit},
                                     {"lattice", run_lattice, {}, 0},
+                                    {"quality", run_quality, {}, 0},
                                     {"radii", run_radii, {}, 0},
                                     {"threads", run_threads, {"nanosphere_90k"}},
                                     {"spheres", run_spheres, {"sio2"}},

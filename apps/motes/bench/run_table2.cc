@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "motes/bench/chart.h"
+#include "motes/bench/grids.h"
 #include "motes/bench/measure.h"
 #include "motes/bench/report.h"
 
@@ -36,21 +37,37 @@ struct Row {
   Camera camera;
   Pair lit, unlit;
   std::optional<FrameTimes> direct, cells;  ///< lit
+  std::optional<FrameTimes> structured;     ///< lit, from grids
+  std::size_t structured_bytes = 0;
 
   std::string_view view() const { return close ? "close" : "far"; }
   /// How many times longer the sweep takes with lighting.
   double lit_over_unlit() const { return lit.sweep.median_ms / unlit.sweep.median_ms; }
+  /// How many times faster the sweep is than grids are drawn. Precondition: these were.
+  double over_structured() const { return structured->median_ms / lit.sweep.median_ms; }
   std::optional<double> paper_fps(const std::optional<FarClose>& fps) const {
     if (!fps) return std::nullopt;
     return close ? fps->close : fps->far;
   }
 };
 
+/// Frames of which one takes longer are slow.
+constexpr double patience_ms = 2000;
+
+/// A renderer of grids of the scene's fields, of voxels of 1, as the paper has them; nothing where
+/// there is not memory enough for them and the copies that are sampled.
+std::optional<Renderer> make_structured(const BenchJob& job, const PreparedScene& prepared) {
+  const KernelSet& kernels = prepared.renderer.kernels();
+  const Lattice lattice = lattice_of_size(kernels.box(), 1);
+  const double bytes = 2 * sample_bytes(lattice, kernels.fields.size());
+  if (bytes > static_cast<double>(job.workplace.memory())) return std::nullopt;
+  return make_grid_renderer(resample_all(kernels, lattice), Reconstruction::trilinear);
+}
+
 /// Measures the engines that are slower by far only where that does not take too long.
 void measure_slow_engines(const BenchJob& job, const Variant& lit, PreparedScene& prepared,
                           Row& row, Console& console) {
   // Direct and cells take about eight times as long as coherent.
-  constexpr double patience_ms = 2000;
   if (row.lit.coherent.median_ms > patience_ms) return;
   for (const auto& [engine, times] :
        {std::pair{Engine::direct, &row.direct}, {Engine::cells, &row.cells}}) {
@@ -62,8 +79,8 @@ void measure_slow_engines(const BenchJob& job, const Variant& lit, PreparedScene
   }
 }
 
-Row measure_row(const BenchJob& job, const BenchScene& entry, PreparedScene& prepared, bool close,
-                Console& console) {
+Row measure_row(const BenchJob& job, const BenchScene& entry, PreparedScene& prepared,
+                const std::optional<Renderer>& structured, bool close, Console& console) {
   ResolvedScene scene = prepared.resolved;
   if (close) scene.camera = moved_closer(scene.camera, entry.close);
   std::vector<Variant> variants;
@@ -74,8 +91,14 @@ Row measure_row(const BenchJob& job, const BenchScene& entry, PreparedScene& pre
     }
   }
   const std::vector<FrameTimes> times = measure_frames(variants, job.options, console);
-  Row row{&entry,       close, scene.camera, {times[0], times[1]}, {times[2], times[3]},
-          std::nullopt, {}};
+  Row row{&entry, close, scene.camera, {times[0], times[1]}, {times[2], times[3]}, std::nullopt, {},
+          {},     0};
+  if (structured) {
+    row.structured_bytes = grid_bytes(*structured);
+    Variant variant{&*structured, variants[0].scene};
+    variant.patience_ms = patience_ms;
+    row.structured = measure_frames({variant}, job.options, console)[0];
+  }
   measure_slow_engines(job, variants[0], prepared, row, console);
   return row;
 }
@@ -120,6 +143,29 @@ void print(const Row& row) {
   std::fflush(stdout);
 }
 
+/// The second table, of grids.
+void print_structured(const std::vector<Row>& rows) {
+  constexpr const char* format = "{:<16}{:<6}{:>10}{:>10}{:>10}  |{:>9}{:>9}{:>9}{:>9}\n";
+  fmt::print("\nStructured: grids of the same fields, trilinear, voxels of 1, lit\n");
+  fmt::print(format, "", "", "memory,", "frames", "sweep/", "paper:", "", "", "RBF/");
+  fmt::print(format, "scene", "view", "MB", "a second", "struct.", "MIC", "CPU", "CPU, RBF",
+             "struct.");
+  for (const Row& row : rows) {
+    const auto cpu = row.paper_fps(row.scene->paper.structured_cpu);
+    const auto mic = row.paper_fps(row.scene->paper.structured_mic);
+    const auto rbf = row.paper_fps(row.scene->paper.cpu);
+    std::optional<double> fps, megabytes, over, paper_over;
+    if (row.structured) {
+      fps = row.structured->fps();
+      megabytes = static_cast<double>(row.structured_bytes) / 1e6;
+      over = row.over_structured();
+    }
+    if (cpu && rbf) paper_over = *rbf / *cpu;
+    fmt::print(format, row.scene->name, row.view(), or_dash(megabytes), or_dash(fps), or_dash(over),
+               or_dash(mic), or_dash(cpu), or_dash(rbf), or_dash(paper_over));
+  }
+}
+
 nlohmann::ordered_json to_json(const Pair& pair) {
   return {{"sweep", to_json(pair.sweep)},
           {"coherent", to_json(pair.coherent)},
@@ -143,14 +189,24 @@ nlohmann::ordered_json to_json(const Row& row, const BenchJob& job, const Prepar
                              {"lit", to_json(row.lit)},
                              {"direct", nullptr},
                              {"cells", nullptr},
+                             {"structured", nullptr},
+                             {"structured_bytes", row.structured_bytes},
                              {"unlit", to_json(row.unlit)},
                              {"lit_over_unlit", row.lit_over_unlit()},
                              {"paper_cpu_fps", nullptr},
-                             {"paper_mic_fps", nullptr}};
+                             {"paper_mic_fps", nullptr},
+                             {"paper_structured_cpu_fps", nullptr},
+                             {"paper_structured_mic_fps", nullptr}};
   if (row.direct) out["direct"] = to_json(*row.direct);
   if (row.cells) out["cells"] = to_json(*row.cells);
-  if (const auto fps = row.paper_fps(row.scene->paper.cpu)) out["paper_cpu_fps"] = *fps;
-  if (const auto fps = row.paper_fps(row.scene->paper.mic)) out["paper_mic_fps"] = *fps;
+  if (row.structured) out["structured"] = to_json(*row.structured);
+  const PaperFigures& paper = row.scene->paper;
+  for (const auto& [key, figures] : {std::pair{"paper_cpu_fps", paper.cpu},
+                                     {"paper_mic_fps", paper.mic},
+                                     {"paper_structured_cpu_fps", paper.structured_cpu},
+                                     {"paper_structured_mic_fps", paper.structured_mic}}) {
+    if (const auto fps = row.paper_fps(figures)) out[key] = *fps;
+  }
   return out;
 }
 
@@ -163,6 +219,7 @@ void add_to_chart(const Row& row, BarChart& chart) {
       row.unlit.coherent.fps(),
       row.direct ? std::optional<double>(row.direct->fps()) : std::nullopt,
       row.cells ? std::optional<double>(row.cells->fps()) : std::nullopt,
+      row.structured ? std::optional<double>(row.structured->fps()) : std::nullopt,
       row.paper_fps(row.scene->paper.cpu)};
   for (std::size_t s = 0; s < std::size(values); ++s) chart.series[s].values.push_back(values[s]);
 }
@@ -196,17 +253,20 @@ void run_table2(const BenchJob& job) {
                   {"coherent, unlit", {}},
                   {"direct, lit", {}},
                   {"cells, lit", {}},
+                  {"structured, lit", {}},
                   {"paper, 16 cores", {}}}};
   for (const BenchScene* entry : job.scenes) {
     Console console;
     PreparedScene prepared = prepare_bench_scene(job, *entry, console);
+    const std::optional<Renderer> structured = make_structured(job, prepared);
     for (const bool close : {false, true}) {
-      rows.push_back(measure_row(job, *entry, prepared, close, console));
+      rows.push_back(measure_row(job, *entry, prepared, structured, close, console));
       print(rows.back());
       results.push_back(to_json(rows.back(), job, prepared));
       add_to_chart(rows.back(), chart);
     }
   }
+  print_structured(rows);
   fmt::print("\n");
   nlohmann::ordered_json summary;
   summary["coherent_over_sweep_lit"] =

@@ -3,30 +3,17 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
-#include <limits>
 #include <string>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/memory.h"
 #include "motes/bench/particle_file.h"
 
 namespace motes {
 namespace {
 
 constexpr double gibibyte = 1024.0 * 1024 * 1024;
-
-/// What the system can still give; the largest number where it does not say.
-std::size_t free_memory() {
-  std::ifstream info("/proc/meminfo");
-  std::string key, unit;
-  std::size_t kibibytes = 0;
-  while (info >> key >> kibibytes) {
-    if (key == "MemAvailable:") return kibibytes * 1024;
-    std::getline(info, unit);
-  }
-  return std::numeric_limits<std::size_t>::max();
-}
 
 }  // namespace
 
@@ -42,7 +29,7 @@ Workplace::Workplace(std::filesystem::path data, std::filesystem::path output,
   if (error) throw Error(output_, fmt::format("cannot be made: {}", error.message()));
 }
 
-std::size_t Workplace::memory() const { return memory_ ? *memory_ : free_memory(); }
+std::size_t Workplace::memory() const { return memory_ ? *memory_ : available_memory(); }
 
 std::filesystem::path Workplace::scene_file(const BenchScene& scene) const {
   return data_ / fmt::format("{}.json", scene.name);
