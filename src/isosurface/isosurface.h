@@ -39,6 +39,7 @@ struct IsosurfaceFrame {
   SurfaceView view;
   SamplePlanes planes;         ///< on which fields are sampled: `first` is in front of all kernels
   SampleIndex last_plane = 0;  ///< behind all kernels
+  double reach = 0;            ///< how far opaque levels hide the light of a place
   std::vector<ClipPlane> clip_planes;  ///< unit normals
 };
 
@@ -59,5 +60,11 @@ struct IsosurfaceHit {
 /// does not depend on which others the grid has. For one thread. Hot: nothing is checked.
 void trace_isosurfaces(const IsosurfaceFrame& frame, const RayGrid& grid,
                        std::vector<IsosurfaceHit>& out);
+
+/// Leaves out the directions, unit vectors, along which an opaque level is nearer than `length` and
+/// the frame's reach to a place on a surface with that normal. Rays are sampled every 1.5 steps.
+/// Clip planes are not looked at.
+void prune(const IsosurfaceFrame& frame, const Point3d& place, const Vector3d& normal,
+           double length, std::vector<Vector3f>& directions);
 
 }  // namespace motes

@@ -12,8 +12,7 @@ namespace motes {
 
 struct ShadedIsosurfaces {
   IsosurfaceFrame frame;
-  ImagePlane plane;
-  SurfaceShading shading;  ///< its lighting's direction, if there is one, is a unit vector
+  SurfaceFrame light;  ///< with the balls and sticks that hide light, if there are any
 };
 
 /// The hits of a tile's n x n rays a pixel, in light: ray by ray, from the front, the rays row by

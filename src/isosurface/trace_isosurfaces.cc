@@ -7,6 +7,7 @@
 #include <hwy/highway.h>
 
 #include "isosurface/march-inl.h"
+#include "isosurface/occlusion-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace motes {
@@ -100,6 +101,22 @@ void trace_grid(const IsosurfaceFrame& frame, const RayGrid& grid,
   }
 }
 
+void prune_directions(const IsosurfaceFrame& frame, const Point3d& place, const Vector3d& normal,
+                      double length, std::vector<Vector3f>& directions) {
+  const SamplingConstants constants = make_constants(*frame.kernels);
+  // Off the surface, so that rounding does not tell on which side of it a ray begins.
+  constexpr double steps_off = 0.05;
+  const Point3d start = place + steps_off * frame.planes.step * normal;
+  const auto reach = static_cast<float>(std::min(length, frame.reach));
+  for (const FieldIsosurfaces& field : frame.fields) {
+    const bool hides = std::any_of(field.levels.begin(), field.levels.end(),
+                                   [](const IsosurfaceLevel& level) { return level.opacity >= 1; });
+    if (hides && !directions.empty()) {
+      prune_by_field(frame, constants, field, start, reach, directions);
+    }
+  }
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace motes
 HWY_AFTER_NAMESPACE();
@@ -111,6 +128,7 @@ namespace motes {
 namespace {
 
 HWY_EXPORT(trace_grid);
+HWY_EXPORT(prune_directions);
 
 /// Sorts hits ray by ray and from the front, and leaves out those behind opaque ones.
 void keep_visible(std::vector<IsosurfaceHit>& hits) {
@@ -135,6 +153,11 @@ void trace_isosurfaces(const IsosurfaceFrame& frame, const RayGrid& grid,
   out.clear();
   HWY_DYNAMIC_DISPATCH(trace_grid)(frame, grid, out);
   keep_visible(out);
+}
+
+void prune(const IsosurfaceFrame& frame, const Point3d& place, const Vector3d& normal,
+           double length, std::vector<Vector3f>& directions) {
+  HWY_DYNAMIC_DISPATCH(prune_directions)(frame, place, normal, length, directions);
 }
 
 }  // namespace motes

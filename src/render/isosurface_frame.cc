@@ -39,16 +39,18 @@ ShadedIsosurfaces make_isosurfaces(const ResolvedScene& scene, const FrameContex
                                    const ImagePlane& plane, const SurfaceShading& shading,
                                    const std::vector<std::uint16_t>& species) {
   ShadedIsosurfaces isosurfaces;
-  isosurfaces.plane = plane;
-  isosurfaces.shading = shading;
-  if (auto& direction = isosurfaces.shading.lighting.direction) {
-    *direction = normalize(*direction);
-  }
   IsosurfaceFrame& frame = isosurfaces.frame;
   frame.kernels = context.kernels;
   frame.species = species.empty() ? nullptr : species.data();
   frame.view = {context.view.axes, context.view.eye, context.orthographic};
   frame.planes = context.view.planes;
+  // About three radii: as far as crevices hide the light of their walls.
+  constexpr double default_reach = 10;  // steps
+  frame.reach =
+      std::min(std::isfinite(shading.occlusion_distance) ? shading.occlusion_distance
+                                                         : default_reach * frame.planes.step,
+               length(context.box.diagonal()));
+  isosurfaces.light = make_light_frame(frame.view, plane, shading);
   frame.last_plane = plane_behind(context.view, context.box);
   frame.clip_planes = context.clip_planes;
   for (std::size_t i = 0; i < scene.isosurfaces.size(); ++i) {

@@ -362,6 +362,15 @@ void Renderer::render(const ResolvedScene& scene, const RenderOptions& options, 
       isosurfaces = make_isosurfaces(scene, context, image_plane(*kernels_, scene),
                                      surface_shading(*kernels_, scene), species_);
       surfaces.isosurfaces = &*isosurfaces;
+      isosurfaces->light.prune = [&frame = isosurfaces->frame](
+                                     const Point3d& place, const Vector3d& normal, double length,
+                                     std::vector<Vector3f>& directions) {
+        prune(frame, place, normal, length, directions);
+      };
+      if (solids) {
+        isosurfaces->light.surface = solids->surface;
+        solids->prune = isosurfaces->light.prune;
+      }
     }
     if (surfaces.any() && !context.layers) {
       const double thickness = merged_steps * context.view.planes.step;

@@ -54,8 +54,8 @@ class TileHits {
     if (surfaces.isosurfaces != nullptr) {
       shade_isosurfaces(*surfaces.isosurfaces, tile, crossings_);
     }
-    n_ =
-        (surfaces.solids != nullptr ? surfaces.solids->plane : surfaces.isosurfaces->plane).samples;
+    n_ = (surfaces.solids != nullptr ? surfaces.solids->plane : surfaces.isosurfaces->light.plane)
+             .samples;
     width_ = static_cast<std::size_t>(n_ * tile.width);
     begin_.assign(width_ * static_cast<std::size_t>(n_ * tile.height) + 1, 0);
     for (const IsosurfaceHit& hit : crossings_) ++begin_[hit.ray + 1];

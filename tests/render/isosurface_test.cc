@@ -42,6 +42,7 @@ TEST(Isosurface, OfOneKernelIsABallInTheVolume) {
 TEST(Isosurface, AloneLeavesWhatIsBehindInPart) {
   PlainScene s = one_kernel();
   s.scene.render.lighting.enabled = false;
+  s.scene.camera.eye = {0, 0, 7};
   s.scene.transfer_functions = {{{{0, {}, 0}}}};
   const Color outer{1, 0, 0}, inner{0, 1, 0};
   s.scene.isosurfaces = {{0, 0.9, 0.25F, {inner}}, {0, 0.2, 0.5F, {outer}}};
@@ -58,11 +59,42 @@ TEST(Isosurface, AloneLeavesWhatIsBehindInPart) {
   EXPECT_NEAR(empty[3], 1 - left * 0.5F, 1e-5);
   // A ball within all of it.
   const std::vector<float> filled =
-      middle(Renderer(s.particles, s.scene.fields, ball(0.4F, 0x0000ff)));
+      middle(Renderer(s.particles, s.scene.fields, ball(0.8F, 0x0000ff)));
   EXPECT_NEAR(filled[0], front, 1e-5);
   EXPECT_NEAR(filled[1], 0.5F * 0.25F, 1e-5);
   EXPECT_NEAR(filled[2], 0.5F * 0.75F, 1e-5);
   EXPECT_NEAR(filled[3], 1, 1e-5);
+}
+
+TEST(Isosurface, HidesTheLightOfWhatIsWithin) {
+  // A ball that looks through a surface which is opaque for light alone: its own front is cut away.
+  PlainScene s = one_kernel();
+  s.scene.transfer_functions = {{{{0, {}, 0}}}};
+  s.scene.render.surface.occlusion_samples = 64;
+  s.scene.render.surface.occlusion_distance = 6;
+  s.scene.isosurfaces = {{0, 0.5, 1, {{1, 1, 1}}}};
+  s.scene.render.clip_planes = {{{0, 0, 1}, 0.9}};
+  s.scene.camera.eye = {0, 0, 7};
+  const GeometrySource within = ball(0.8F, 0xffffff);
+  const auto brightness = [&](ResolvedScene scene) {
+    const Framebuffer image = Renderer(s.particles, s.scene.fields, within).render(scene, {});
+    return image.pixel(image.width / 2, image.height / 2)[0];
+  };
+  ResolvedScene open = s.scene;
+  open.isosurfaces.clear();
+  // Planes do not cut what hides light: all of the ball's sky is behind the surface.
+  EXPECT_GT(brightness(open), 0.9F);
+  EXPECT_LT(brightness(s.scene), 0.01F);
+}
+
+TEST(Isosurface, HasNoShadowsOfItsOwnWhereItIsConvex) {
+  PlainScene s = one_kernel();
+  s.scene.transfer_functions = {{{{0, {}, 0}}}};
+  s.scene.isosurfaces = {{0, 0.5, 1, {{1, 1, 1}}}};
+  const Renderer renderer(s.particles, s.scene.fields);
+  const Framebuffer expected = renderer.render(s.scene, {});
+  s.scene.render.surface.occlusion_samples = 16;
+  EXPECT_LE(compare_images(renderer.render(s.scene, {}), expected).max, 1e-5);
 }
 
 TEST(Isosurface, IsTheSameForAnyNumberOfThreads) {
