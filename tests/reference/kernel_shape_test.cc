@@ -70,13 +70,12 @@ TEST(Kernels, NormalisedOnesIntegrateToTheirWeight) {
   // A grid of boxes over the support; the mean of a smooth kernel's jumps at their faces is small.
   for (const Kernel& kernel : all_kernels()) {
     if (kernel.shape.type == KernelType::gaussian) continue;  // its jump takes a finer grid
-    FieldSource source{.name = "",
-                       .kernel = kernel,
-                       .normalise = true,
-                       .index = {0},
-                       .radius = {0.8F},
-                       .weight = {2.5F},
-                       .species_color = {}};
+    FieldSource source;
+    source.kernel = kernel;
+    source.normalise = true;
+    source.index = {0};
+    source.radius = {0.8F};
+    source.weight = {2.5F};
     const auto kernels = particle_kernels(particles_at({{0, 0, 0}}), source);
     const int boxes = 60;
     const double side = 2 * kernels[0].support_radius / boxes;
