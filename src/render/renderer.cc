@@ -16,6 +16,7 @@
 
 #include "core/error.h"
 #include "core/stopwatch.h"
+#include "render/isosurface_frame.h"
 #include "render/make_surface.h"
 #include "render/render_tile.h"
 #include "render/surface_layers.h"
@@ -156,15 +157,18 @@ int tile_size_of(Engine engine) { return engine == Engine::sweep ? AreaBuffer::s
 /// them shows.
 constexpr double merged_steps = 0.1;
 
-SurfaceFrame frame_of(const Surface& surface, const ResolvedScene& scene) {
-  const KernelSet& kernels = *surface.kernels;
-  const SurfaceSettings& settings = scene.render.surface;
+ImagePlane image_plane(const KernelSet& kernels, const ResolvedScene& scene) {
   ImagePlane plane;
   plane.half_height = internal_half_height(kernels, scene.camera);
   plane.width = scene.render.width;
   plane.height = scene.render.height;
   plane.half_width = plane.half_height * plane.width / plane.height;
-  plane.samples = settings.antialiasing;
+  plane.samples = scene.render.surface.antialiasing;
+  return plane;
+}
+
+SurfaceShading surface_shading(const KernelSet& kernels, const ResolvedScene& scene) {
+  const SurfaceSettings& settings = scene.render.surface;
   SurfaceShading shading;
   shading.lighting = scene.render.lighting;
   shading.occlusion_samples = settings.occlusion_samples;
@@ -173,10 +177,25 @@ SurfaceFrame frame_of(const Surface& surface, const ResolvedScene& scene) {
   }
   shading.shadows = settings.shadows;
   shading.light_radius = 0.5 * settings.light_angle * std::numbers::pi / 180;
+  return shading;
+}
+
+SurfaceFrame frame_of(const Surface& surface, const ResolvedScene& scene) {
+  const KernelSet& kernels = *surface.kernels;
   return make_surface_frame(surface,
                             {camera_axes(scene.camera), to_internal(kernels, scene.camera.eye),
                              scene.camera.orthographic_height.has_value()},
-                            plane, shading);
+                            image_plane(kernels, scene), surface_shading(kernels, scene));
+}
+
+/// Whether nothing is seen of the fields but their isosurfaces.
+bool draws_surfaces_only(const ResolvedScene& scene) {
+  const auto invisible = [](const TransferFunction& function) {
+    return std::all_of(function.points.begin(), function.points.end(),
+                       [](const auto& point) { return point.extinction == 0; });
+  };
+  return !scene.isosurfaces.empty() &&
+         std::all_of(scene.transfer_functions.begin(), scene.transfer_functions.end(), invisible);
 }
 
 /// Calls work(tile) for all tiles of the image, in parallel.
@@ -207,12 +226,17 @@ void for_tiles(const ResolvedScene& scene, const RenderOptions& options, int til
   });
 }
 
+bool any_colored(const std::vector<FieldSource>& fields) {
+  return std::any_of(fields.begin(), fields.end(),
+                     [](const FieldSource& field) { return field.colored_by_species; });
+}
+
 }  // namespace
 
 Renderer::Renderer(const ParticleSet& particles, const std::vector<FieldSource>& fields,
                    const GeometrySource& geometry) {
   const Stopwatch stopwatch;
-  if (geometry.empty()) {
+  if (geometry.empty() && !any_colored(fields)) {
     grids_ = make_grid_fields(fields);
     *kernels_ = build_kernel_set(particles, fields);
     set_units(grids_, *kernels_);
@@ -231,6 +255,7 @@ void Renderer::build(const ParticleSet& particles, const std::vector<FieldSource
   grids_ = make_grid_fields(fields);
   const auto build_from = [&](const std::vector<FieldSource>& sources) {
     *kernels_ = build_kernel_set(particles, sources, &order_);
+    species_ = species_of_kernels(particles, sources, order_);
     set_units(grids_, *kernels_);
     if (geometry.empty()) return;
     surface_ = make_surface(particles, geometry, sources, order_, *kernels_, field_values_);
@@ -250,7 +275,7 @@ TreeUpdate Renderer::set_particles(const ParticleSet& particles,
   TreeUpdate update = TreeUpdate::refitted;
   const bool any_grids = std::any_of(
       fields.begin(), fields.end(), [](const FieldSource& field) { return field.grid != nullptr; });
-  if (!geometry.empty() || surface_ || any_grids || !grids_.empty() ||
+  if (!geometry.empty() || surface_ || any_grids || !grids_.empty() || any_colored(fields) ||
       !refit_kernel_set(particles, fields, order_, *kernels_)) {
     update = TreeUpdate::rebuilt;
     build(particles, fields, geometry);
@@ -269,6 +294,21 @@ void Renderer::set_kernel(std::size_t field, const Kernel& kernel) {
   cells_.reset();
   assert(field < kernels_->fields.size());
   kernels_->fields[field].set_kernel(kernel);
+}
+
+void Renderer::render_volume(const ResolvedScene& scene, const RenderOptions& options,
+                             FrameContext& context, Framebuffer& image, TileCounts& all) const {
+  std::optional<CellGrid> own_cells;
+  if (context.engine == Engine::cells) {
+    if (!cells_) own_cells = build_cell_grid(*kernels_);
+    context.cells = cells_ ? &*cells_ : &*own_cells;
+  }
+  std::mutex mutex;
+  for_tiles(scene, options, tile_size_of(context.engine), [&](const Tile& tile) {
+    const TileCounts counts = render_tile(context, tile, image);
+    const std::lock_guard lock(mutex);
+    all.add(counts);
+  });
 }
 
 Framebuffer Renderer::render(const ResolvedScene& scene, const RenderOptions& options,
@@ -297,39 +337,52 @@ void Renderer::render(const ResolvedScene& scene, const RenderOptions& options, 
   if (!field_values_.empty()) {
     field_colors = color_by_fields(surface_->colors, field_values_, scene.transfer_functions);
   }
-  std::optional<SurfaceFrame> surface;
+  std::optional<SurfaceFrame> solids;
+  FrameSurfaces surfaces;
   if (surface_) {
-    surface = frame_of(cut_surface ? *cut_surface : *surface_, scene);
-    surface->colors = field_colors ? &*field_colors : &surface_->colors;
+    solids = frame_of(cut_surface ? *cut_surface : *surface_, scene);
+    solids->colors = field_colors ? &*field_colors : &surface_->colors;
+    surfaces.solids = &*solids;
   }
-  if (kernels_->fields.empty() || (kernels_->size() == 0 && grids_.empty())) {
+  const auto draw_surfaces_only = [&] {
     std::fill(image.rgba.begin(), image.rgba.end(), 0.0f);
-    if (surface) {
-      for_tiles(scene, options, AreaBuffer::size, [&](const Tile& tile) {
-        static thread_local TileLayers layers;
-        find_layers(*surface, 0, tile, layers);
-        composite_layers(layers, tile, image);
-      });
-    }
+    if (!surfaces.any()) return;
+    for_tiles(scene, options, AreaBuffer::size, [&](const Tile& tile) {
+      static thread_local TileLayers layers;
+      find_layers(surfaces, 0, tile, layers);
+      composite_layers(layers, tile, image);
+    });
+  };
+  if (kernels_->fields.empty() || (kernels_->size() == 0 && grids_.empty())) {
+    draw_surfaces_only();
   } else {
     FrameContext context = make_context(*kernels_, grids_, scene, options);
-    if (surface && !context.layers) {
+    std::optional<ShadedIsosurfaces> isosurfaces;
+    if (!scene.isosurfaces.empty()) {
+      isosurfaces = make_isosurfaces(scene, context, image_plane(*kernels_, scene),
+                                     surface_shading(*kernels_, scene), species_);
+      surfaces.isosurfaces = &*isosurfaces;
+      isosurfaces->light.prune = [&frame = isosurfaces->frame](
+                                     const Point3d& place, const Vector3d& normal, double length,
+                                     std::vector<Vector3f>& directions) {
+        prune(frame, place, normal, length, directions);
+      };
+      if (solids) {
+        isosurfaces->light.surface = solids->surface;
+        solids->prune = isosurfaces->light.prune;
+      }
+    }
+    if (surfaces.any() && !context.layers) {
       const double thickness = merged_steps * context.view.planes.step;
-      context.layers = [&surface, thickness](const Tile& tile, TileLayers& out) {
-        find_layers(*surface, thickness, tile, out);
+      context.layers = [&surfaces, thickness](const Tile& tile, TileLayers& out) {
+        find_layers(surfaces, thickness, tile, out);
       };
     }
-    std::optional<CellGrid> own_cells;
-    if (context.engine == Engine::cells) {
-      if (!cells_) own_cells = build_cell_grid(*kernels_);
-      context.cells = cells_ ? &*cells_ : &*own_cells;
+    if (draws_surfaces_only(scene)) {
+      draw_surfaces_only();
+    } else {
+      render_volume(scene, options, context, image, all);
     }
-    std::mutex mutex;
-    for_tiles(scene, options, tile_size_of(context.engine), [&](const Tile& tile) {
-      const TileCounts counts = render_tile(context, tile, image);
-      const std::lock_guard lock(mutex);
-      all.add(counts);
-    });
   }
   if (statistics != nullptr) {
     *statistics = {stopwatch.milliseconds(),

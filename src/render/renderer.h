@@ -21,6 +21,9 @@
 
 namespace motes {
 
+struct FrameContext;
+struct TileCounts;
+
 struct RenderOptions {
   int threads = 0;  ///< 0: all of the machine's
   /// Planes of samples of one pass over the tree (paper, section 4.2); 0: the whole ray in one
@@ -95,9 +98,14 @@ class Renderer {
   void build(const ParticleSet& particles, const std::vector<FieldSource>& fields,
              const GeometrySource& geometry);
 
+  /// Samples the fields, cut by the context's layers.
+  void render_volume(const ResolvedScene& scene, const RenderOptions& options,
+                     FrameContext& context, Framebuffer& image, TileCounts& all) const;
+
   std::unique_ptr<KernelSet> kernels_ = std::make_unique<KernelSet>();  ///< stays where it is
   std::optional<Surface> surface_;
   FieldValues field_values_;
+  std::vector<std::uint16_t> species_;  ///< of kernels, for isosurfaces that are coloured by it
   GridFields grids_;
   KernelOrder order_;  ///< empty until particles move
   std::optional<CellGrid> cells_;

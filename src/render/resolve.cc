@@ -11,9 +11,23 @@ namespace {
 
 /// Whether a field's transfer function leaves anything to the data.
 bool is_open(const Field& field) {
+  if (!field.draws_volume()) return false;
   if (std::holds_alternative<TransferFunction>(field.transfer_function)) return false;
   const auto* named = std::get_if<NamedTransferFunction>(&field.transfer_function);
   return named == nullptr || !named->range || !named->extinction;
+}
+
+std::vector<Color> colors_of(const Isosurface& isosurface, const ParticleSet& particles,
+                             const TransferFunction& function) {
+  if (!isosurface.color) return {color_at(function, isosurface.value)};
+  if (const Color* color = std::get_if<Color>(&*isosurface.color)) return {*color};
+  if (particles.species.empty()) return {color_from_srgb(0xcccccc)};
+  std::vector<Color> colors;
+  for (const std::uint32_t srgb :
+       colors_of_species(particles, std::get<ColorBy>(*isosurface.color))) {
+    colors.push_back(color_from_srgb(srgb));
+  }
+  return colors;
 }
 
 }  // namespace
@@ -41,8 +55,17 @@ ResolvedScene resolve(const Scene& scene, const ParticleSet& particles,
   }
   const double opacity = fit_opacity(profiles, scene.render.background);
   for (std::size_t f = 0; f < fields.size(); ++f) {
-    resolved.transfer_functions.push_back(fit_transfer_function(
-        fields[f].transfer_function, sources[f].species_color, profiles[f], opacity));
+    const TransferFunction invisible{{{0, sources[f].species_color, 0}}};
+    resolved.transfer_functions.push_back(fields[f].draws_volume()
+                                              ? fit_transfer_function(fields[f].transfer_function,
+                                                                      sources[f].species_color,
+                                                                      profiles[f], opacity)
+                                              : invisible);
+    for (const Isosurface& isosurface : fields[f].isosurfaces) {
+      resolved.isosurfaces.push_back(
+          {f, isosurface.value, static_cast<float>(isosurface.opacity),
+           colors_of(isosurface, particles, resolved.transfer_functions.back())});
+    }
   }
   return resolved;
 }

@@ -1,17 +1,27 @@
-// Balls and sticks as layers in the way of rays.
+// Surfaces as layers in the way of pixels' rays.
 #pragma once
 
 #include "image/framebuffer.h"
+#include "isosurface/shade_isosurfaces.h"
 #include "samples/layers.h"
 #include "surface/shade.h"
 
 namespace motes {
 
-/// The layers that the frame's n x n rays of each pixel of `tile` meet: each ray is a share of its
-/// pixel. Those of a pixel within `thickness` (internal length) are made one.
-void find_layers(const SurfaceFrame& frame, double thickness, const Tile& tile, TileLayers& out);
+/// What there is of surfaces in a frame; either may be null.
+struct FrameSurfaces {
+  const SurfaceFrame* solids = nullptr;  ///< balls and sticks
+  const ShadedIsosurfaces* isosurfaces = nullptr;
 
-/// Composites layers with nothing between them into `image`.
+  bool any() const { return solids != nullptr || isosurfaces != nullptr; }
+};
+
+/// The layers that a tile's rays meet, n x n a pixel; of a pixel's hits those within `thickness`
+/// are one. There is one of the surfaces at least.
+void find_layers(const FrameSurfaces& surfaces, double thickness, const Tile& tile,
+                 TileLayers& out);
+
+/// Puts layers alone into an image: a scene without volumes.
 void composite_layers(const TileLayers& layers, const Tile& tile, Framebuffer& image);
 
 }  // namespace motes

@@ -71,6 +71,29 @@ std::vector<float> values_of(const ParticleSet& particles, const NumberOrPropert
   }
 }
 
+/// The table of elements that a field's radius names, unless that is the name of a property.
+std::optional<ElementRadius> radius_table(const ParticleSet& particles,
+                                          const NumberOrProperty& radius) {
+  const auto* name = std::get_if<std::string>(&radius);
+  if (name == nullptr || particles.find_property(*name) != nullptr) return std::nullopt;
+  if (*name == "van_der_waals") return ElementRadius::van_der_waals;
+  if (*name == "covalent") return ElementRadius::covalent;
+  return std::nullopt;
+}
+
+/// The radii that a field gives, one a particle or one for all.
+std::vector<float> own_radii(const ParticleSet& particles, const NumberOrProperty& radius,
+                             Warnings& warnings) {
+  const auto table = radius_table(particles, radius);
+  if (!table) return values_of(particles, radius, "radius");
+  if (particles.species.empty()) return {1};
+  const auto of_species = radii_of_species(particles, *table, warnings);
+  std::vector<float> radii(particles.size());
+  std::transform(particles.species.begin(), particles.species.end(), radii.begin(),
+                 [&](std::uint16_t species) { return of_species[species]; });
+  return radii;
+}
+
 /// Leaves out the particles that have no place or no kernel, with a warning for each reason.
 class Filter {
  public:
@@ -211,7 +234,7 @@ void complete_source(const ParticleSet& particles, const Field& field,
   const bool density = !field.radius && !field.weight && has_sizes(particles);
   const bool of_mass = density && particles.find_property("mass");
   const std::vector<float> own_radius =
-      field.radius ? values_of(particles, *field.radius, "radius") : std::vector<float>();
+      field.radius ? own_radii(particles, *field.radius, warnings) : std::vector<float>();
   const std::vector<float>& radius = field.radius ? own_radius : default_radius;
   const NumberOrProperty unit = of_mass ? NumberOrProperty("mass") : NumberOrProperty(1.0);
   const std::vector<float> weight = values_of(particles, field.weight.value_or(unit), "weight");
@@ -248,6 +271,10 @@ void complete_source(const ParticleSet& particles, const Field& field,
   if (!field.radius) take_as_widths(source);
   source.weight = gather(weight, source.index);
   source.species_color = species_color(particles, source.index);
+  source.colored_by_species = std::any_of(
+      field.isosurfaces.begin(), field.isosurfaces.end(), [](const Isosurface& isosurface) {
+        return isosurface.color && std::holds_alternative<ColorBy>(*isosurface.color);
+      });
 }
 
 }  // namespace
@@ -289,8 +316,8 @@ void color_by_species(Scene& scene, const ParticleSet& particles) {
   if (elements.size() < 2 || elements.size() > max_colored_species) return;
   if (scene.fields.empty()) scene.fields.emplace_back().name = "all";
   Field& field = scene.fields.front();
-  const bool open =
-      field.transfer_function.index() == 0 && field.select == Selection{} && !field.grid;
+  const bool open = field.transfer_function.index() == 0 && field.isosurfaces.empty() &&
+                    field.select == Selection{} && !field.grid;
   if (scene.fields.size() > 1 || !open) return;
   field.transfer_function = NamedTransferFunction{std::string(species_colors), {}, {}, {}};
 }
@@ -312,7 +339,8 @@ void check_names(const std::vector<Field>& fields, const ParticleSet& particles)
            {std::pair{"radius", &field.radius}, std::pair{"weight", &field.weight}}) {
         key = fmt::format("fields[{}].{}", k, name);
         const auto* property = *value ? std::get_if<std::string>(&**value) : nullptr;
-        if (property != nullptr) property_named(particles, *property);
+        const bool of_table = value == &field.radius && *value && radius_table(particles, **value);
+        if (property != nullptr && !of_table) property_named(particles, *property);
       }
     }
   } catch (const Error& error) {

@@ -55,7 +55,10 @@ Scene fill_in(const Scene& scene, const std::vector<Field>& fields,
   for (std::size_t f = 0; f < fields.size(); ++f) {
     Field& field = filled.fields[f];
     const FieldSource& source = sources[f];
-    field.transfer_function = written_form(field.transfer_function, resolved.transfer_functions[f]);
+    if (field.draws_volume()) {
+      field.transfer_function =
+          written_form(field.transfer_function, resolved.transfer_functions[f]);
+    }
     if (field.grid) continue;
     if (!field.radius) field.radius = plain_number(source.radius);
     // Weights that differ and that nobody gave are masses.

@@ -73,4 +73,12 @@ GeometrySource make_geometry_source(const ParticleSet& particles,
 /// The colour of a species that is no element: colours that are easily told apart.
 std::uint32_t other_species_color(std::size_t species);
 
+/// One for each species that the particles have; those that are no elements have the mean of the
+/// others, with a warning.
+std::vector<float> radii_of_species(const ParticleSet& particles, ElementRadius table,
+                                    Warnings& warnings);
+
+/// 0xrrggbb, one for each species that the particles have.
+std::vector<std::uint32_t> colors_of_species(const ParticleSet& particles, ColorBy by);
+
 }  // namespace motes

@@ -21,31 +21,6 @@ std::uint32_t element_color(const Element& element) {
   return std::uint32_t{c[0]} << 16 | std::uint32_t{c[1]} << 8 | c[2];
 }
 
-/// One value for each species from what `of` gives for elements.
-std::vector<float> radii_of_species(const ParticleSet& particles, ElementRadius table,
-                                    Warnings& warnings) {
-  std::vector<float> radii;
-  double sum = 0;
-  int known = 0;
-  for (const std::string& name : particles.species_names) {
-    const Element* element = find_element(name);
-    radii.push_back(std::numeric_limits<float>::quiet_NaN());
-    if (element == nullptr) continue;
-    radii.back() = table == ElementRadius::covalent ? element->covalent_radius
-                                                    : van_der_waals_radius(*element);
-    sum += radii.back();
-    ++known;
-  }
-  const float other = known == 0 ? 1 : static_cast<float>(sum / known);
-  for (std::size_t s = 0; s < radii.size(); ++s) {
-    if (!std::isnan(radii[s])) continue;
-    radii[s] = other;
-    warnings.add(fmt::format("species '{}' is no element: its balls have radius {:.3g}",
-                             printable(particles.species_names[s]), other));
-  }
-  return radii;
-}
-
 /// Radii of the particles in `index`.
 std::vector<float> radii_of(const ParticleSet& particles, const Geometry& item,
                             const std::vector<std::uint32_t>& index, Warnings& warnings) {
@@ -105,13 +80,7 @@ std::vector<std::uint32_t> colors_of(const ParticleSet& particles, const Geometr
   if (const Color* color = std::get_if<Color>(&item.color)) {
     return std::vector<std::uint32_t>(index.size(), color_to_srgb(*color));
   }
-  std::vector<std::uint32_t> of_species;
-  for (std::size_t s = 0; s < particles.species_names.size(); ++s) {
-    const Element* element = find_element(particles.species_names[s]);
-    const bool by_element = std::get<ColorBy>(item.color) != ColorBy::species;
-    of_species.push_back(by_element && element != nullptr ? element_color(*element)
-                                                          : other_species_color(s));
-  }
+  const auto of_species = colors_of_species(particles, std::get<ColorBy>(item.color));
   const bool of_field = std::get<ColorBy>(item.color) == ColorBy::field;
   std::vector<std::uint32_t> colors(index.size(), 0xcccccc);
   if (!particles.species.empty()) {
@@ -203,6 +172,40 @@ std::uint32_t other_species_color(std::size_t species) {
   constexpr std::uint32_t colors[] = {0xe69f00, 0x56b4e9, 0x009e73, 0xf0e442,
                                       0x0072b2, 0xd55e00, 0xcc79a7};
   return colors[species % std::size(colors)];
+}
+
+std::vector<std::uint32_t> colors_of_species(const ParticleSet& particles, ColorBy by) {
+  std::vector<std::uint32_t> colors;
+  for (std::size_t s = 0; s < particles.species_names.size(); ++s) {
+    const Element* element = find_element(particles.species_names[s]);
+    colors.push_back(by != ColorBy::species && element != nullptr ? element_color(*element)
+                                                                  : other_species_color(s));
+  }
+  return colors;
+}
+
+std::vector<float> radii_of_species(const ParticleSet& particles, ElementRadius table,
+                                    Warnings& warnings) {
+  std::vector<float> radii;
+  double sum = 0;
+  int known = 0;
+  for (const std::string& name : particles.species_names) {
+    const Element* element = find_element(name);
+    radii.push_back(std::numeric_limits<float>::quiet_NaN());
+    if (element == nullptr) continue;
+    radii.back() = table == ElementRadius::covalent ? element->covalent_radius
+                                                    : van_der_waals_radius(*element);
+    sum += radii.back();
+    ++known;
+  }
+  const float other = known == 0 ? 1 : static_cast<float>(sum / known);
+  for (std::size_t s = 0; s < radii.size(); ++s) {
+    if (!std::isnan(radii[s])) continue;
+    radii[s] = other;
+    warnings.add(fmt::format("species '{}' is no element: it has the radius {:.3g}",
+                             printable(particles.species_names[s]), other));
+  }
+  return radii;
 }
 
 GeometrySource make_geometry_source(const ParticleSet& particles,

@@ -21,6 +21,7 @@
 #include "scene/camera.h"
 #include "scene/clip_plane.h"
 #include "scene/geometry.h"
+#include "scene/isosurface.h"
 #include "scene/kernel.h"
 #include "scene/selection.h"
 #include "scene/transfer_function.h"
@@ -72,7 +73,13 @@ struct Field {
   std::optional<double> support_factor, kernel_scale;
   std::optional<KernelShape> kernel_shape;
   std::variant<std::monostate, TransferFunction, NamedTransferFunction> transfer_function;
+  std::vector<Isosurface> isosurfaces;
   bool operator==(const Field&) const = default;
+
+  /// Where there are isosurfaces, only if a transfer function says how.
+  bool draws_volume() const {
+    return isosurfaces.empty() || !std::holds_alternative<std::monostate>(transfer_function);
+  }
 };
 
 struct Lighting {
@@ -144,8 +151,9 @@ struct FieldSource {
   /// What the kernel's shape takes, of Gaussians standard deviations; file's length unit; one an
   /// index, or one for all.
   std::vector<float> radius;
-  std::vector<float> weight;  ///< one an index, or one for all
-  Color species_color;        ///< display colour of the species that most of its particles are
+  std::vector<float> weight;        ///< one an index, or one for all
+  bool colored_by_species = false;  ///< isosurfaces ask for the kernels' species
+  Color species_color;  ///< display colour of the species that most of its particles are
   /// No field: particles that the tree has only since they are drawn. The last of the sources.
   bool drawn_only = false;
 
@@ -158,6 +166,7 @@ struct FieldSource {
 struct ResolvedScene {
   std::vector<FieldSource> fields;
   std::vector<TransferFunction> transfer_functions;  ///< one a field
+  std::vector<ResolvedIsosurface> isosurfaces;       ///< of all fields
   Camera camera;
   double step_size = 0;
   RenderSettings render;

@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "scene/checked_json.h"
 #include "scene/geometry_json.h"
+#include "scene/isosurface_json.h"
 #include "scene/scene.h"
 #include "scene/style.h"
 
@@ -183,12 +184,12 @@ FieldGrid read_grid(const Value& value, const std::filesystem::path& directory) 
 }
 
 Field read_field(const Value& value, const std::filesystem::path& directory) {
-  value.check_keys(
-      {"name", "grid", "select", "radius", "weight", "normalise", "kernel", "transfer_function"});
+  value.check_keys({"name", "grid", "select", "radius", "weight", "normalise", "kernel",
+                    "transfer_function", "isosurfaces"});
   Field field;
   value.with("grid", [&](const Value& grid) {
     field.grid = read_grid(grid, directory);
-    for (const char* key : {"select", "radius", "weight", "normalise", "kernel"}) {
+    for (const char* key : {"select", "radius", "weight", "normalise", "kernel", "isosurfaces"}) {
       value.with(key, [](const Value& v) {
         v.fail("is for fields of particles; expected none, as the field is a grid");
       });
@@ -207,6 +208,7 @@ Field read_field(const Value& value, const std::filesystem::path& directory) {
   });
   value.with("transfer_function",
              [&](const Value& v) { field.transfer_function = read_transfer_function(v); });
+  value.with("isosurfaces", [&](const Value& v) { field.isosurfaces = read_isosurfaces(v); });
   return field;
 }
 
@@ -371,7 +373,7 @@ void read_style(const Value& value, Scene& scene) {
     value.fail(error.what());
   }
   if (!scene.fields.empty() && !draws_fields) {
-    value.fail(fmt::format("expected no fields with the style '{}', which draws none", name));
+    value.fail(fmt::format("expected no fields with the style '{}', which draws none of them", name));
   }
   apply_style(name, scene);
 }

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "scene/geometry_json.h"
+#include "scene/isosurface_json.h"
 #include "scene/scene.h"
 
 namespace motes {
@@ -79,6 +80,9 @@ json to_json(const Field& field, const std::filesystem::path& directory) {
   if (!std::holds_alternative<std::monostate>(field.transfer_function)) {
     out["transfer_function"] =
         std::visit([](const auto& f) { return to_json(f); }, field.transfer_function);
+  }
+  for (const Isosurface& isosurface : field.isosurfaces) {
+    out["isosurfaces"].push_back(to_json(isosurface));
   }
   return out;
 }

@@ -1,46 +1,14 @@
 #include "surface/shade.h"
 
-#include <algorithm>
-#include <cmath>
 #include <span>
 
 #include "surface/directions.h"
+#include "surface/light.h"
+#include "surface/phong.h"
 #include "surface/spots.h"
 
 namespace motes {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
-/// v with length 1; without std::hypot()'s care for lengths that no vector has here.
-Vector3d unit(const Vector3d& v) { return v / std::sqrt(dot(v, v)); }
-
-/// s c + plus
-Color scaled(const Color& c, double s, double plus) {
-  const auto channel = [&](float x) {
-    return static_cast<float>(s * static_cast<double>(x) + plus);
-  };
-  return {channel(c.r), channel(c.g), channel(c.b)};
-}
-
-/// Phong's model (docs/surface.md). `view`: unit vector from the surface to the eye; the lighting's
-/// direction, if there is one, is a unit vector.
-Color phong(const Lighting& lighting, const Color& base, const Vector3d& normal,
-            const Vector3d& view, const Light& light) {
-  const double sky = static_cast<double>(light.sky);
-  if (!lighting.enabled) return scaled(base, sky, 0);
-  const Vector3d lamp = lighting.direction.value_or(view);
-  // What a headlight does not reach would lie behind what is seen: the open sky stands for it.
-  const double lit = lighting.direction ? static_cast<double>(light.lamp) : sky;
-  const double cosine = dot(normal, lamp);
-  if (!(cosine > 0) || lit == 0) return scaled(base, lighting.ambient * sky, 0);
-  const double mirrored =
-      lighting.direction ? std::max(dot(normal, unit(lamp + view)), 0.0) : cosine;
-  const float gloss =
-      std::pow(static_cast<float>(mirrored), static_cast<float>(lighting.shininess));
-  return scaled(base, lighting.ambient * sky + lit * lighting.diffuse * cosine,
-                lit * lighting.specular * static_cast<double>(gloss));
-}
 
 /// One tile on its way.
 class TileShader {
@@ -49,13 +17,14 @@ class TileShader {
       : frame_(frame),
         shading_(frame.shading),
         n_(frame.plane.samples),
-        margin_(has_spots() ? pattern_side / 2 : 0),
+        margin_(has_spots(shading_) ? pattern_side / 2 : 0),
         tile_(tile) {}
 
   void run(SurfaceSamples& out) {
-    make_grid();
+    // With a margin over which light is evened out.
+    grid_ = rays_of(frame_.plane, tile_, margin_);
     trace(*frame_.surface, frame_.view, grid_, hits_);
-    if (has_spots()) light_spots();
+    if (has_spots(shading_)) light_spots();
     const auto rays_per_pixel = static_cast<std::size_t>(n_) * static_cast<std::size_t>(n_);
     const std::size_t size = static_cast<std::size_t>(tile_.width) *
                              static_cast<std::size_t>(tile_.height) * rays_per_pixel;
@@ -67,23 +36,6 @@ class TileShader {
   }
 
  private:
-  bool has_shadows() const { return shading_.shadows && shading_.lighting.direction.has_value(); }
-  bool has_soft_shadows() const { return has_shadows() && shading_.light_radius > 0; }
-  bool has_spots() const { return shading_.occlusion_samples > 0 || has_soft_shadows(); }
-
-  /// The rays of the tile and of a margin around it, over which light is evened out.
-  void make_grid() {
-    const ImagePlane& plane = frame_.plane;
-    grid_.du = 2 * plane.half_width / (plane.width * n_);
-    grid_.dv = -2 * plane.half_height / (plane.height * n_);
-    grid_.u = 0.5 * grid_.du - plane.half_width;
-    grid_.v = 0.5 * grid_.dv + plane.half_height;
-    grid_.column = n_ * (tile_.x - margin_);
-    grid_.row = n_ * (tile_.y - margin_);
-    grid_.width = n_ * (tile_.width + 2 * margin_);
-    grid_.height = n_ * (tile_.height + 2 * margin_);
-  }
-
   /// A ray of the grid, and what it hits.
   struct Ray {
     Point3d origin;
@@ -114,42 +66,17 @@ class TileShader {
           if (ray.hit.any()) spots_.add({ray.point(), Vector3d(ray.hit.normal), {}});
         }
         const int number = pattern_number(tile_.x + x, tile_.y + y);
-        for (Spot& spot : spots_.end_pixel()) spot.light = light_of(spot, number);
+        for (Spot& spot : spots_.end_pixel()) {
+          spot.light = light_of(frame_, spot, number, directions_);
+        }
       }
     }
-  }
-
-  /// By the directions of a pixel of that number.
-  Light light_of(const Spot& spot, int number) {
-    Light light;
-    if (shading_.occlusion_samples > 0) {
-      const Across sides = across(spot.normal);
-      directions_.clear();
-      for (const Vector3f& direction : directions_of(frame_.sky, number)) {
-        const Vector3d d(direction);
-        directions_.emplace_back(d.x * sides.x + d.y * sides.y + d.z * spot.normal);
-      }
-      light.sky = free_part(spot, shading_.occlusion_samples, shading_.occlusion_distance);
-    }
-    if (has_soft_shadows()) {
-      directions_.clear();
-      for (const Vector3f& direction : directions_of(frame_.lamp, number)) {
-        if (dot(Vector3d(direction), spot.normal) > 0) directions_.push_back(direction);
-      }
-      light.lamp = free_part(spot, shading_.shadow_samples, infinity);
-    }
-    return light;
-  }
-  /// The part of `count` rays of which those along directions_ are the ones that may be free.
-  float free_part(const Spot& spot, int count, double length) const {
-    return static_cast<float>(num_unoccluded(*frame_.surface, spot.point, directions_, length)) /
-           static_cast<float>(count);
   }
 
   void shade_pixel(int x, int y, SurfaceSamples& out) {
     std::span<const Spot> spots;
     lights_.clear();
-    if (has_spots()) {
+    if (has_spots(shading_)) {
       spots = spots_.of(x + margin_, y + margin_);
       for (const Spot& spot : spots) {
         lights_.push_back(spots_.even_light(x + margin_, y + margin_, spot));
@@ -168,18 +95,12 @@ class TileShader {
         const SurfacePoint& point = spots[s].point;
         if (point.particle == ray.hit.particle && point.stick == ray.hit.stick) light = lights_[s];
       }
-      if (has_shadows() && !has_soft_shadows()) light.lamp = hard_light(ray);
+      if (has_hard_shadows(shading_)) {
+        light.lamp = hard_light(frame_, ray.point(), Vector3d(ray.hit.normal), directions_);
+      }
       out.color[at] = phong(shading_.lighting, frame_.colors->of(ray.hit.particle),
                             Vector3d(ray.hit.normal), -unit(ray.direction), light);
     }
-  }
-
-  float hard_light(const Ray& ray) const {
-    const Vector3d& lamp = *shading_.lighting.direction;
-    if (dot(lamp, Vector3d(ray.hit.normal)) <= 0) return 0;
-    const Vector3f direction(lamp);
-    return static_cast<float>(
-        num_unoccluded(*frame_.surface, ray.point(), {&direction, 1}, infinity));
   }
 
   const SurfaceFrame& frame_;
@@ -195,9 +116,31 @@ class TileShader {
 
 }  // namespace
 
+RayGrid rays_of(const ImagePlane& plane, const Tile& tile, int margin) {
+  const int n = plane.samples;
+  RayGrid grid;
+  grid.du = 2 * plane.half_width / (plane.width * n);
+  grid.dv = -2 * plane.half_height / (plane.height * n);
+  grid.u = 0.5 * grid.du - plane.half_width;
+  grid.v = 0.5 * grid.dv + plane.half_height;
+  grid.column = n * (tile.x - margin);
+  grid.row = n * (tile.y - margin);
+  grid.width = n * (tile.width + 2 * margin);
+  grid.height = n * (tile.height + 2 * margin);
+  return grid;
+}
+
 SurfaceFrame make_surface_frame(const Surface& surface, const SurfaceView& view,
                                 const ImagePlane& plane, const SurfaceShading& shading) {
-  SurfaceFrame frame{&surface, &surface.colors, view, plane, shading, {}, {}};
+  SurfaceFrame frame = make_light_frame(view, plane, shading);
+  frame.surface = &surface;
+  frame.colors = &surface.colors;
+  return frame;
+}
+
+SurfaceFrame make_light_frame(const SurfaceView& view, const ImagePlane& plane,
+                              const SurfaceShading& shading) {
+  SurfaceFrame frame{nullptr, nullptr, view, plane, shading, {}, {}, {}};
   frame.sky = cosine_directions(shading.occlusion_samples, shading.seed);
   if (auto& direction = frame.shading.lighting.direction) {
     *direction = normalize(*direction);

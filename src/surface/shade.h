@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <vector>
 
@@ -26,6 +27,9 @@ struct ImagePlane {
   int samples = 1;                         ///< n
 };
 
+/// The rays of a tile's pixels and of `margin` more on each side.
+RayGrid rays_of(const ImagePlane& plane, const Tile& tile, int margin);
+
 /// The light, and what it reaches (docs/surface.md).
 struct SurfaceShading {
   Lighting lighting;
@@ -38,9 +42,14 @@ struct SurfaceShading {
   std::uint32_t seed = 0;   ///< of the directions of all these rays
 };
 
+/// Leaves out the directions along which something that is neither ball nor stick is nearer to a
+/// place on a surface with that normal than `length`. Called by many threads at once.
+using Pruner = std::function<void(const Point3d& place, const Vector3d& normal, double length,
+                                  std::vector<Vector3f>& directions)>;
+
 /// Everything that a frame's tiles share; made once a frame, then only read.
 struct SurfaceFrame {
-  const Surface* surface = nullptr;
+  const Surface* surface = nullptr;       ///< may be null where only its light is asked for
   const SurfaceColors* colors = nullptr;  ///< for the surface's particles
   SurfaceView view;
   ImagePlane plane;
@@ -48,11 +57,16 @@ struct SurfaceFrame {
   /// Directions of rays, for each of the 8 x 8 pixels of a pattern that covers the image: about +z,
   /// and about the direction of the light in world axes.
   std::vector<Vector3f> sky, lamp;
+  Pruner prune;  ///< what else hides the light; may be empty
 };
 
 /// In the surface's own colours.
 SurfaceFrame make_surface_frame(const Surface& surface, const SurfaceView& view,
                                 const ImagePlane& plane, const SurfaceShading& shading);
+
+/// The same without a surface: for the light alone of what else there is.
+SurfaceFrame make_light_frame(const SurfaceView& view, const ImagePlane& plane,
+                              const SurfaceShading& shading);
 
 /// The n x n samples of a Tile's pixels as a picture of n * width columns and n * height rows.
 struct SurfaceSamples {

@@ -201,6 +201,21 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{R"("fields": [{"grid": "a", "weight": 1}])", "fields[0].weight: is for fields of"},
         Refusal{R"("fields": [{"grid": "a", "normalise": true}])", "fields[0].normalise: is for"},
         Refusal{R"("fields": [{"grid": "a", "kernel": {}}])", "fields[0].kernel: is for fields of"},
+        Refusal{R"("fields": [{"grid": "a", "isosurfaces": []}])",
+                "fields[0].isosurfaces: is for fields of particles"},
+        Refusal{R"("fields": [{"isosurfaces": {"value": 1}}])",
+                "fields[0].isosurfaces: expected an array of isosurfaces"},
+        Refusal{R"("fields": [{"isosurfaces": [{"value": 1e999}]}])", ""},
+        Refusal{R"("fields": [{"isosurfaces": [{"color": "element"}]}])",
+                "fields[0].isosurfaces[0]: expected the key 'value'"},
+        Refusal{R"("fields": [{"isosurfaces": [{"value": "x"}]}])",
+                "fields[0].isosurfaces[0].value: expected a number"},
+        Refusal{R"("fields": [{"isosurfaces": [{"value": 1, "opacity": 1.5}]}])",
+                "fields[0].isosurfaces[0].opacity: expected a number from 0 to 1"},
+        Refusal{R"("fields": [{"isosurfaces": [{"value": 1, "color": "elements"}]}])",
+                "fields[0].isosurfaces[0].color: expected \"element\", \"species\" or a colour"},
+        Refusal{R"("style": "surface", "fields": [{}])",
+                "style: expected no fields with the style 'surface'"},
         Refusal{R"("camera": {"eye": [0, 1]})",
                 "camera.eye: expected an array of three numbers, found an array of 2"},
         Refusal{R"("camera": {"eye": [0, 1, "2"]})",
@@ -379,6 +394,12 @@ Field random_field(int number) {
   field.kernel_scale = maybe([] { return random_double(-30, 30); });
   field.kernel_shape = maybe([] { return KernelShape{KernelType::quintic_spline, {}}; });
   if (field.kernel_shape) field.support_factor.reset();
+  if (*rc::gen::arbitrary<bool>()) {
+    field.isosurfaces = {{random_double(-3, 3), {}, 1},
+                         {0.5, ColorBy::element, 0.25},
+                         {0.75, ColorBy::species, 0},
+                         {1, Color{0.25F, 0, 1}, 0.5}};
+  }
   return field;
 }
 

@@ -1,0 +1,162 @@
+// Rays in all directions from a point on a surface: which of them meet an isosurface nearby.
+// Included once per instruction set.
+#if defined(MOTES_ISOSURFACE_OCCLUSION_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef MOTES_ISOSURFACE_OCCLUSION_INL_H_
+#undef MOTES_ISOSURFACE_OCCLUSION_INL_H_
+#else
+#define MOTES_ISOSURFACE_OCCLUSION_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "isosurface/isosurface.h"
+#include "isosurface/local_kernels-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace motes {
+namespace HWY_NAMESPACE {
+
+/// Which children of a node may have a kernel that reaches within `length` of p.
+HWY_INLINE unsigned children_within(const Bvh::Node& node, const Point3f& p, float length,
+                                    float support_factor) {
+  const hn::CappedTag<float, Bvh::width> d;
+  using V = hn::Vec<decltype(d)>;
+  unsigned hits = 0;
+  for (std::size_t c = 0; c < Bvh::width; c += hn::Lanes(d)) {
+    const auto outside = [&](float x, const float* min, const float* max) HWY_ATTR {
+      const V below = hn::Sub(hn::Load(d, min + c), hn::Set(d, x));
+      const V above = hn::Sub(hn::Set(d, x), hn::Load(d, max + c));
+      return hn::Max(hn::Zero(d), hn::Max(below, above));
+    };
+    const V x = outside(p.x, node.min_x, node.max_x);
+    const V y = outside(p.y, node.min_y, node.max_y);
+    const V z = outside(p.z, node.min_z, node.max_z);
+    const V square = hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z)));
+    const V reach = hn::MulAdd(hn::Set(d, support_factor), hn::Load(d, node.max_radius + c),
+                               hn::Set(d, 1.00001f * length));
+    hits |= mask_bits(d, hn::Le(square, hn::Mul(reach, reach))) << c;
+  }
+  return hits;
+}
+
+/// The surroundings of a point in one field.
+class Surroundings {
+ public:
+  Surroundings(const KernelSet& kernels, const SamplingConstants& constants, std::size_t f)
+      : kernels_(kernels), constants_(constants), f_(f) {
+    with_shape(constants, f, [&](const auto& shape) { distance_scale_ = shape.distance_scale; });
+  }
+
+  /// Finds the kernels that reach within `length` of p.
+  void enter(const Point3d& p, float length) {
+    const float factor = constants_.fields[f_].support_factor;
+    const Point3f near(static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z));
+    local_.size = 0;
+    distance_.clear();
+    traverse(
+        kernels_.bvh,
+        [&](const Bvh::Node& node) { return children_within(node, near, length, factor); },
+        [&](std::size_t leaf) { add_leaf(leaf, p, length); });
+  }
+
+  /// The field at a distance from the point along the lanes' directions.
+  HWY_NOINLINE Lanes evaluate(float distance, const float (&directions)[3][max_lanes]) const {
+    const LaneTag d;
+    const Lanes t = hn::Set(d, distance);
+    const Lanes x = hn::Mul(t, hn::Load(d, directions[0]));
+    const Lanes y = hn::Mul(t, hn::Load(d, directions[1]));
+    const Lanes z = hn::Mul(t, hn::Load(d, directions[2]));
+    Lanes sum = hn::Zero(d);
+    with_shape(constants_, f_, [&](const auto& shape) HWY_ATTR {
+      for (std::size_t i = 0; i < local_.size; ++i) {
+        if (std::abs(distance_[i] - distance) > local_.support[i]) continue;
+        const Lanes dx = hn::Sub(x, hn::Set(d, local_.x[i]));
+        const Lanes dy = hn::Sub(y, hn::Set(d, local_.y[i]));
+        const Lanes dz = hn::Sub(z, hn::Set(d, local_.z[i]));
+        const Lanes square = hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)));
+        const auto phi = shape.template at<false>(d, hn::Mul(square, hn::Set(d, local_.scale[i])));
+        sum = hn::MulAdd(hn::Set(d, local_.peak[i]), phi.value, sum);
+      }
+    });
+    return sum;
+  }
+
+ private:
+  void add_leaf(std::size_t leaf, const Point3d& p, float length) {
+    const FieldConstants& field = constants_.fields[f_];
+    const std::size_t begin = leaf * Bvh::leaf_size;
+    const std::size_t end = std::min(begin + Bvh::leaf_size, kernels_.size());
+    local_.reserve(Bvh::leaf_size);
+    for (std::size_t i = begin; i < end; ++i) {
+      if (kernels_.field_of(i) != f_) continue;
+      const auto x = static_cast<float>(kernels_.x[i] - p.x);
+      const auto y = static_cast<float>(kernels_.y[i] - p.y);
+      const auto z = static_cast<float>(kernels_.z[i] - p.z);
+      const float radius = kernels_.radius[i], support = 1.00001f * field.support_factor * radius;
+      const float distance = std::sqrt(x * x + y * y + z * z);
+      if (distance > support + length) continue;
+      const std::size_t at = local_.size++;
+      local_.x[at] = x;
+      local_.y[at] = y;
+      local_.z[at] = z;
+      local_.support[at] = support;
+      local_.scale[at] = distance_scale_ / (radius * radius);
+      local_.peak[at] = field.peak_factor * kernels_.weight[i];
+      distance_.push_back(distance);
+    }
+  }
+
+  const KernelSet& kernels_;
+  const SamplingConstants& constants_;
+  std::size_t f_;
+  float distance_scale_ = 1;
+  LocalKernels local_;
+  std::vector<float> distance_;  ///< of each local kernel's centre
+};
+
+/// Leaves out the directions along which a level comes within `length`, for the levels of one field
+/// that are opaque.
+void prune_by_field(const IsosurfaceFrame& frame, const SamplingConstants& constants,
+                    const FieldIsosurfaces& field, const Point3d& start, float length,
+                    std::vector<Vector3f>& directions) {
+  const LaneTag d;
+  Surroundings surroundings(*frame.kernels, constants, field.field);
+  surroundings.enter(start, length);
+  constexpr double steps_of_samples = 1.5;  // from one to the next
+  const double spacing = steps_of_samples * frame.planes.step;
+  const int count = std::max(1, static_cast<int>(std::ceil(static_cast<double>(length) / spacing)));
+  std::size_t size = 0;
+  for (std::size_t first = 0; first < directions.size(); first += hn::Lanes(d)) {
+    const std::size_t there = std::min(directions.size() - first, hn::Lanes(d));
+    alignas(64) float lanes[3][max_lanes] = {};
+    for (std::size_t l = 0; l < there; ++l) {
+      for (int i = 0; i < 3; ++i) lanes[i][l] = directions[first + l][i];
+    }
+    const Lanes at_start = surroundings.evaluate(0, lanes);
+    unsigned open = (1u << there) - 1;
+    for (int i = 1; i <= count && open != 0; ++i) {
+      const Lanes value =
+          surroundings.evaluate(length * static_cast<float>(i) / static_cast<float>(count), lanes);
+      for (const IsosurfaceLevel& level : field.levels) {
+        if (level.opacity < 1) continue;
+        const Lanes v = hn::Set(d, level.value);
+        open &= ~(mask_bits(d, hn::Gt(value, v)) ^ mask_bits(d, hn::Gt(at_start, v)));
+      }
+    }
+    for (std::size_t l = 0; l < there; ++l) {
+      if ((open >> l & 1) != 0) directions[size++] = directions[first + l];
+    }
+  }
+  directions.resize(size);
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace motes
+HWY_AFTER_NAMESPACE();
+
+#endif

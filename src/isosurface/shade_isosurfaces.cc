@@ -1,0 +1,133 @@
+#include "isosurface/shade_isosurfaces.h"
+
+#include <algorithm>
+#include <span>
+
+#include "surface/directions.h"
+#include "surface/light.h"
+#include "surface/phong.h"
+
+namespace motes {
+namespace {
+
+/// One tile on its way. Opaque hits are lit as balls and sticks are; what light reaches those of
+/// translucent levels is not asked.
+class TileShader {
+ public:
+  TileShader(const ShadedIsosurfaces& isosurfaces, const Tile& tile)
+      : isosurfaces_(isosurfaces),
+        light_(isosurfaces.light),
+        n_(light_.plane.samples),
+        margin_(has_spots(light_.shading) ? pattern_side / 2 : 0),
+        tile_(tile),
+        grid_(rays_of(light_.plane, tile, margin_)) {}
+
+  void run(std::vector<IsosurfaceHit>& out) {
+    trace_isosurfaces(isosurfaces_.frame, grid_, hits_);
+    begin_.assign(grid_.size() + 1, 0);
+    for (const IsosurfaceHit& hit : hits_) ++begin_[hit.ray + 1];
+    for (std::size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
+    if (margin_ != 0) light_spots();
+    out.clear();
+    const int skipped = n_ * margin_;
+    for (int row = 0; row < n_ * tile_.height; ++row) {
+      for (int column = 0; column < n_ * tile_.width; ++column) {
+        for (IsosurfaceHit hit : hits_of(column + skipped, row + skipped)) {
+          shade(column / n_, row / n_, hit);
+          hit.ray = static_cast<std::uint32_t>(row * n_ * tile_.width + column);
+          out.push_back(hit);
+        }
+      }
+    }
+  }
+
+ private:
+  std::span<const IsosurfaceHit> hits_of(int column, int row) const {
+    const auto ray = static_cast<std::size_t>(row) * static_cast<std::size_t>(grid_.width) +
+                     static_cast<std::size_t>(column);
+    return std::span(hits_).subspan(begin_[ray], begin_[ray + 1] - begin_[ray]);
+  }
+
+  struct Ray {
+    Point3d origin;
+    Vector3d direction;
+  };
+  Ray ray_of(const IsosurfaceHit& hit) const {
+    const auto width = static_cast<std::uint32_t>(grid_.width);
+    const SurfaceView& view = light_.view;
+    const Vector3d across =
+        (grid_.u + (grid_.column + static_cast<int>(hit.ray % width)) * grid_.du) * view.axes.x +
+        (grid_.v + (grid_.row + static_cast<int>(hit.ray / width)) * grid_.dv) * view.axes.y;
+    if (view.orthographic) return {view.eye + across, view.axes.forward};
+    return {view.eye, view.axes.forward + across};
+  }
+  SurfacePoint point_of(const IsosurfaceHit& hit) const {
+    const Ray ray = ray_of(hit);
+    return {ray.origin + hit.depth * ray.direction, no_particle, hit.level};
+  }
+
+  /// A spot for each opaque level that a pixel shows.
+  void light_spots() {
+    spots_.reset(tile_.width + 2 * margin_);
+    for (int y = 0; y < tile_.height + 2 * margin_; ++y) {
+      for (int x = 0; x < tile_.width + 2 * margin_; ++x) {
+        for (int i = 0; i < n_ * n_; ++i) {
+          const auto hits = hits_of(n_ * x + i % n_, n_ * y + i / n_);
+          if (hits.empty() || hits.back().opacity < 1) continue;
+          spots_.add({point_of(hits.back()), Vector3d(hits.back().normal), {}});
+        }
+        const int number = pattern_number(tile_.x + x - margin_, tile_.y + y - margin_);
+        for (Spot& spot : spots_.end_pixel()) {
+          spot.light = light_of(light_, spot, number, directions_);
+        }
+      }
+    }
+    for (int y = 0; y < tile_.height; ++y) {
+      for (int x = 0; x < tile_.width; ++x) {
+        lights_begin_.push_back(lights_.size());
+        for (const Spot& spot : spots_.of(x + margin_, y + margin_)) {
+          lights_.push_back(spots_.even_light(x + margin_, y + margin_, spot));
+        }
+      }
+    }
+  }
+
+  /// Lights a hit of the tile's pixel (x, y).
+  void shade(int x, int y, IsosurfaceHit& hit) {
+    Light light;
+    if (hit.opacity >= 1 && margin_ != 0) {
+      const auto pixel = static_cast<std::size_t>(y * tile_.width + x);
+      const auto spots = spots_.of(x + margin_, y + margin_);
+      for (std::size_t s = 0; s < spots.size(); ++s) {
+        if (spots[s].point.stick == hit.level) light = lights_[lights_begin_[pixel] + s];
+      }
+    }
+    const Vector3d normal(hit.normal);
+    if (hit.opacity >= 1 && has_hard_shadows(light_.shading)) {
+      light.lamp = hard_light(light_, point_of(hit), normal, directions_);
+    }
+    hit.color =
+        phong(light_.shading.lighting, hit.color, normal, -unit(ray_of(hit).direction), light);
+  }
+
+  const ShadedIsosurfaces& isosurfaces_;
+  const SurfaceFrame& light_;
+  int n_, margin_;
+  Tile tile_;
+  RayGrid grid_;
+  std::vector<IsosurfaceHit> hits_;
+  std::vector<std::size_t> begin_;         ///< of each ray's hits, and the end
+  Spots spots_;                            ///< their points' `stick` is the level
+  std::vector<Light> lights_;              ///< evened out, of the spots of the tile's pixels
+  std::vector<std::size_t> lights_begin_;  ///< of each pixel
+  std::vector<Vector3f> directions_;
+};
+
+}  // namespace
+
+void shade_isosurfaces(const ShadedIsosurfaces& isosurfaces, const Tile& tile,
+                       std::vector<IsosurfaceHit>& out) {
+  TileShader(isosurfaces, tile).run(out);
+}
+
+}  // namespace motes

@@ -1,0 +1,69 @@
+#include "render/isosurface_frame.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "surface/make_sticks.h"
+
+namespace motes {
+namespace {
+
+/// A plane of samples behind all of the volume.
+SampleIndex plane_behind(const View& view, const Bounds3d& box) {
+  double farthest = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Point3d p{(corner & 1 ? box.max : box.min).x, (corner & 2 ? box.max : box.min).y,
+                    (corner & 4 ? box.max : box.min).z};
+    farthest = std::max(farthest, dot(p - view.eye, view.axes.forward));
+  }
+  const double planes = farthest / view.planes.step - static_cast<double>(view.planes.first);
+  return static_cast<SampleIndex>(std::ceil(planes)) + 1;
+}
+
+}  // namespace
+
+std::vector<std::uint16_t> species_of_kernels(const ParticleSet& particles,
+                                              const std::vector<FieldSource>& sources,
+                                              const KernelOrder& order) {
+  const bool asked = std::any_of(sources.begin(), sources.end(),
+                                 [](const FieldSource& s) { return s.colored_by_species; });
+  std::vector<std::uint16_t> species;
+  if (!asked || particles.species.empty()) return species;
+  for (const std::uint32_t i : particles_in_order(sources, order)) {
+    species.push_back(particles.species[i]);
+  }
+  return species;
+}
+
+ShadedIsosurfaces make_isosurfaces(const ResolvedScene& scene, const FrameContext& context,
+                                   const ImagePlane& plane, const SurfaceShading& shading,
+                                   const std::vector<std::uint16_t>& species) {
+  ShadedIsosurfaces isosurfaces;
+  IsosurfaceFrame& frame = isosurfaces.frame;
+  frame.kernels = context.kernels;
+  frame.species = species.empty() ? nullptr : species.data();
+  frame.view = {context.view.axes, context.view.eye, context.orthographic};
+  frame.planes = context.view.planes;
+  // About three radii: as far as crevices hide the light of their walls.
+  constexpr double default_reach = 10;  // steps
+  frame.reach =
+      std::min(std::isfinite(shading.occlusion_distance) ? shading.occlusion_distance
+                                                         : default_reach * frame.planes.step,
+               length(context.box.diagonal()));
+  isosurfaces.light = make_light_frame(frame.view, plane, shading);
+  frame.last_plane = plane_behind(context.view, context.box);
+  frame.clip_planes = context.clip_planes;
+  for (std::size_t i = 0; i < scene.isosurfaces.size(); ++i) {
+    const ResolvedIsosurface& isosurface = scene.isosurfaces[i];
+    auto at = std::find_if(frame.fields.begin(), frame.fields.end(),
+                           [&](const auto& field) { return field.field == isosurface.field; });
+    if (at == frame.fields.end()) at = frame.fields.insert(at, {isosurface.field, {}});
+    const double scale = context.kernels->fields[isosurface.field].value_scale;
+    at->levels.push_back({static_cast<std::uint32_t>(i),
+                          static_cast<float>(isosurface.value * scale), isosurface.opacity,
+                          isosurface.colors});
+  }
+  return isosurfaces;
+}
+
+}  // namespace motes

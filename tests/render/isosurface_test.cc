@@ -1,0 +1,123 @@
+// Isosurfaces in pictures: those of a single kernel are balls.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "render/engine_check.h"
+#include "render/renderer.h"
+
+namespace motes {
+namespace {
+
+/// One Gaussian of radius 2 at the origin; at value v its isosurface is a ball of radius
+/// 2 sqrt(-2 ln v).
+PlainScene one_kernel() {
+  PlainScene s = plain_scene({{0, 0, 0}}, 16);
+  s.scene.fields[0].radius = {2};
+  s.scene.fields[0].kernel.support_factor = 4;
+  s.scene.step_size = 0.4;
+  s.scene.render.lighting.enabled = true;
+  s.scene.render.surface = {3, 0, {}, false, 0};
+  return s;
+}
+float radius_at(double value) { return static_cast<float>(2 * std::sqrt(-2 * std::log(value))); }
+
+GeometrySource ball(float radius, std::uint32_t srgb) { return {{0}, {radius}, {srgb}, {}, 0}; }
+
+TEST(Isosurface, OfOneKernelIsABallInTheVolume) {
+  PlainScene s = one_kernel();
+  const Renderer with_ball(s.particles, s.scene.fields, ball(radius_at(0.5), 0x3366cc));
+  const Renderer alone(s.particles, s.scene.fields);
+  ResolvedScene surface = s.scene;
+  surface.isosurfaces = {{0, 0.5, 1, {color_from_srgb(0x3366cc)}}};
+  for (const Way& way : all_ways()) {
+    const Framebuffer expected = render_in(way, with_ball, s.scene);
+    const ImageDifference difference = compare_images(render_in(way, alone, surface), expected);
+    EXPECT_LE(difference.rms, 1e-3) << way.name();
+    // One of a pixel's nine rays may graze the ball and not the surface.
+    EXPECT_LE(difference.max, 0.06) << way.name();
+  }
+}
+
+TEST(Isosurface, AloneLeavesWhatIsBehindInPart) {
+  PlainScene s = one_kernel();
+  s.scene.render.lighting.enabled = false;
+  s.scene.camera.eye = {0, 0, 7};
+  s.scene.transfer_functions = {{{{0, {}, 0}}}};
+  const Color outer{1, 0, 0}, inner{0, 1, 0};
+  s.scene.isosurfaces = {{0, 0.9, 0.25F, {inner}}, {0, 0.2, 0.5F, {outer}}};
+  const auto middle = [&](const Renderer& renderer) {
+    const Framebuffer image = renderer.render(s.scene, {});
+    const float* const p = image.pixel(image.width / 2, image.height / 2);
+    return std::vector<float>(p, p + 4);
+  };
+  // Outer, inner, inner, outer.
+  const std::vector<float> empty = middle(Renderer(s.particles, s.scene.fields));
+  const float front = 0.5F, green = 0.5F * (0.25F + 0.75F * 0.25F), left = 0.5F * 0.5625F;
+  EXPECT_NEAR(empty[0], front + left * 0.5F, 1e-5);
+  EXPECT_NEAR(empty[1], green, 1e-5);
+  EXPECT_NEAR(empty[3], 1 - left * 0.5F, 1e-5);
+  // A ball within all of it.
+  const std::vector<float> filled =
+      middle(Renderer(s.particles, s.scene.fields, ball(0.8F, 0x0000ff)));
+  EXPECT_NEAR(filled[0], front, 1e-5);
+  EXPECT_NEAR(filled[1], 0.5F * 0.25F, 1e-5);
+  EXPECT_NEAR(filled[2], 0.5F * 0.75F, 1e-5);
+  EXPECT_NEAR(filled[3], 1, 1e-5);
+}
+
+TEST(Isosurface, HidesTheLightOfWhatIsWithin) {
+  // A ball that looks through a surface which is opaque for light alone: its own front is cut away.
+  PlainScene s = one_kernel();
+  s.scene.transfer_functions = {{{{0, {}, 0}}}};
+  s.scene.render.surface.occlusion_samples = 64;
+  s.scene.render.surface.occlusion_distance = 6;
+  s.scene.isosurfaces = {{0, 0.5, 1, {{1, 1, 1}}}};
+  s.scene.render.clip_planes = {{{0, 0, 1}, 0.9}};
+  s.scene.camera.eye = {0, 0, 7};
+  const GeometrySource within = ball(0.8F, 0xffffff);
+  const auto brightness = [&](ResolvedScene scene) {
+    const Framebuffer image = Renderer(s.particles, s.scene.fields, within).render(scene, {});
+    return image.pixel(image.width / 2, image.height / 2)[0];
+  };
+  ResolvedScene open = s.scene;
+  open.isosurfaces.clear();
+  // Planes do not cut what hides light: all of the ball's sky is behind the surface.
+  EXPECT_GT(brightness(open), 0.9F);
+  EXPECT_LT(brightness(s.scene), 0.01F);
+}
+
+TEST(Isosurface, HasNoShadowsOfItsOwnWhereItIsConvex) {
+  PlainScene s = one_kernel();
+  s.scene.transfer_functions = {{{{0, {}, 0}}}};
+  s.scene.isosurfaces = {{0, 0.5, 1, {{1, 1, 1}}}};
+  const Renderer renderer(s.particles, s.scene.fields);
+  const Framebuffer expected = renderer.render(s.scene, {});
+  s.scene.render.surface.occlusion_samples = 16;
+  EXPECT_LE(compare_images(renderer.render(s.scene, {}), expected).max, 1e-5);
+}
+
+TEST(Isosurface, IsTheSameForAnyNumberOfThreads) {
+  PlainScene s = one_kernel();
+  s.scene.render.width = 150;
+  s.scene.render.height = 140;
+  s.scene.isosurfaces = {{0, 0.5, 0.5F, {{1, 1, 1}}}, {0, 0.7, 1, {{1, 0, 0}}}};
+  const Renderer renderer(s.particles, s.scene.fields);
+  const Framebuffer one = renderer.render(s.scene, {.threads = 1});
+  EXPECT_EQ(renderer.render(s.scene, {.threads = 3}).rgba, one.rgba);
+}
+
+TEST(Isosurface, IsCutByClipPlanes) {
+  PlainScene s = one_kernel();
+  s.scene.render.lighting.enabled = false;
+  s.scene.transfer_functions = {{{{0, {}, 0}}}};
+  s.scene.isosurfaces = {{0, 0.5, 1, {{1, 1, 1}}}};
+  s.scene.render.clip_planes = {{{1, 0, 0}, 0}};
+  const Renderer renderer(s.particles, s.scene.fields);
+  const Framebuffer image = renderer.render(s.scene, {});
+  EXPECT_EQ(image.pixel(image.width / 2 + 1, image.height / 2)[3], 0);
+  EXPECT_EQ(image.pixel(image.width / 2 - 2, image.height / 2)[3], 1);
+}
+
+}  // namespace
+}  // namespace motes
