@@ -47,7 +47,8 @@ HWY_INLINE KernelSpan find_span(double center, double radius, double support, do
   KernelSpan span;
   span.first = static_cast<int>(std::ceil(std::max(middle - reach, 0.)));
   span.last = static_cast<int>(std::floor(std::min(middle + reach, size - 1.)));
-  span.place = static_cast<float>(span.first / unit * unit - middle);
+  const int counted_from = span.first / unit * unit;
+  span.place = static_cast<float>(counted_from - middle);
   span.per_radius_sq = static_cast<float>(step / radius * (step / radius));
   return span;
 }
