@@ -71,6 +71,13 @@ void warn_of_empty_picture(const Framebuffer& image, const Renderer& renderer, c
   if (largest >= least_visible) return;
   if (any_in_view(renderer, camera, static_cast<double>(image.width) / image.height)) {
     if (between_samples) return;
+    if (renderer.kernels().fields.empty()) {
+      warnings.add(
+          "none of the balls and sticks in view is seen; expected larger radii, or clip planes "
+          "that "
+          "leave some of them");
+      return;
+    }
     warnings.add(
         fmt::format("the {} in view are too transparent to be seen (largest opacity "
                     "{:.2g}); expected a larger extinction in the transfer function, or a range "

@@ -435,6 +435,8 @@ TEST_F(CommandLine, APictureThatIsAllButEmptyIsExplained) {
               testing::MatchesRegex("motes: warning: the particles in view are too transparent to "
                                     "be seen \\(largest opacity [0-9.e-]+\\); expected a larger "
                                     "extinction in the transfer function.*\n"));
+  EXPECT_THAT(warning("--style spheres --clip-plane 1,0,0,-1"),
+              HasSubstr("motes: warning: none of the balls and sticks in view is seen"));
   const std::string away = " --eye 0,0,50 --target 0,0,99";
   EXPECT_THAT(warning("--transfer-function t.json" + away), HasSubstr("nothing is in view"));
   EXPECT_THAT(warning("--orthographic 5 --target 0,50,0 --eye 0,50,9"),
