@@ -44,7 +44,7 @@ ShadedIsosurfaces make_isosurfaces(const ResolvedScene& scene, const FrameContex
   frame.species = species.empty() ? nullptr : species.data();
   frame.view = {context.view.axes, context.view.eye, context.orthographic};
   frame.planes = context.view.planes;
-  // About three radii: as far as crevices hide the light of their walls.
+  // About five small radii: as far as crevices hide the light of their walls.
   constexpr double default_reach = 10;  // steps
   frame.reach =
       std::min(std::isfinite(shading.occlusion_distance) ? shading.occlusion_distance

@@ -128,6 +128,22 @@ TEST(MakeFieldSources, TakesNumbersAndProperties) {
   EXPECT_EQ(source.kernel, (Kernel{3, 7}));
 }
 
+TEST(MakeFieldSources, TakesTheElementsRadiiByName) {
+  Warnings warnings;
+  Field field;
+  field.radius = "van_der_waals";
+  field.isosurfaces = {{0.5, ColorBy::element, 1}};
+  const FieldSource source = make_field_source(silica(), field, {}, warnings);
+  // Mantina et al. 2009.
+  EXPECT_THAT(source.radius, ElementsAre(2.10F, 1.52F, 1.52F, 2.10F));
+  EXPECT_TRUE(source.colored_by_species);
+  // A property of that name goes first.
+  ParticleSet particles = silica();
+  particles.properties.push_back({"covalent", {4, 5, 6, 7}});
+  field.radius = "covalent";
+  EXPECT_THAT(make_field_source(particles, field, {}, warnings).radius, ElementsAre(4, 5, 6, 7));
+}
+
 TEST(MakeFieldSources, TakesADensityWhereParticlesHaveASize) {
   ParticleSet particles = silica();
   particles.properties = {{"h", {2, 2, 2, 2}}, {"radius", {1, 1, 1, 2}}, {"mass", {3, 4, 5, 6}}};
