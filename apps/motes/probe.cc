@@ -99,7 +99,9 @@ void add_probe_command(CLI::App& program) {
   CLI::App* command =
       program.add_subcommand("probe", "Print the fields' values and gradients at given points.");
   const auto options = std::make_shared<Options>();
-  command->add_option("FILE", options->path, "particles, grids, or a scene")->required()->type_name("");
+  command->add_option("FILE", options->path, "particles, grids, or a scene")
+      ->required()
+      ->type_name("");
   command->add_option("--points", options->points, "CSV file of points, or - for standard input")
       ->required()
       ->type_name("P.csv");

@@ -373,7 +373,8 @@ void read_style(const Value& value, Scene& scene) {
     value.fail(error.what());
   }
   if (!scene.fields.empty() && !draws_fields) {
-    value.fail(fmt::format("expected no fields with the style '{}', which draws none of them", name));
+    value.fail(
+        fmt::format("expected no fields with the style '{}', which draws none of them", name));
   }
   apply_style(name, scene);
 }
