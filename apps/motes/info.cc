@@ -218,7 +218,9 @@ void add_info_command(CLI::App& program) {
   CLI::App* command = program.add_subcommand(
       "info", "Say what is in a file: format, particles, species, properties, cell, bounds.");
   const auto options = std::make_shared<Options>();
-  command->add_option("FILE", options->path, "particles, grids, or a scene")->required()->type_name("");
+  command->add_option("FILE", options->path, "particles, grids, or a scene")
+      ->required()
+      ->type_name("");
   add_data_options(*command, options->changes);
   command->add_flag("--json", options->json, "print JSON instead of a table");
   command->footer(examples);
