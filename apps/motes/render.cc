@@ -171,7 +171,9 @@ std::string check_suffix(const std::string& path) {
 void add_render_command(CLI::App& program) {
   CLI::App* command = program.add_subcommand("render", "Make a picture of particles.");
   const auto options = std::make_shared<Options>();
-  command->add_option("FILE", options->path, "particles, grids, or a scene")->required()->type_name("");
+  command->add_option("FILE", options->path, "particles, grids, or a scene")
+      ->required()
+      ->type_name("");
   command->add_option("-o,--output", options->output, "picture: .png, .jpg, .exr or .npy")
       ->required()
       ->type_name("OUT")
