@@ -387,7 +387,7 @@ void run_spheres(const BenchJob& job) {
     }
   }
   if (!ratios.empty()) {
-    fmt::print("\nMotes / Embree: {:.2f} in the geometric mean, {:.2f} at least\n",
+    fmt::print("\nMotes is {:.2f} times as fast as Embree in the geometric mean, {:.2f} at least\n",
                geometric_mean(ratios), *std::ranges::min_element(ratios));
   }
   write_results(job, "spheres", rows);
