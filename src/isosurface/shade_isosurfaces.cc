@@ -96,7 +96,8 @@ class TileShader {
   void shade(int x, int y, IsosurfaceHit& hit) {
     Light light;
     if (hit.opacity >= 1 && margin_ != 0) {
-      const auto pixel = static_cast<std::size_t>(y * tile_.width + x);
+      const auto pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(tile_.width) +
+                         static_cast<std::size_t>(x);
       const auto spots = spots_.of(x + margin_, y + margin_);
       for (std::size_t s = 0; s < spots.size(); ++s) {
         if (spots[s].point.stick == hit.level) light = lights_[lights_begin_[pixel] + s];

@@ -22,7 +22,8 @@ inline RayPacket make_packet(const IsosurfaceFrame& frame, const RayGrid& grid, 
   packet.lanes = width * height;
   const bool orthographic = frame.view.orthographic;
   for (int l = 0; l < packet.lanes; ++l) {
-    const double u = grid.u + (x + l % width) * grid.du, v = grid.v + (y + l / width) * grid.dv;
+    const int column = x + l % width, row = y + l / width;
+    const double u = grid.u + column * grid.du, v = grid.v + row * grid.dv;
     (orthographic ? packet.origin_x : packet.direction_x)[l] = u;
     (orthographic ? packet.origin_y : packet.direction_y)[l] = v;
   }

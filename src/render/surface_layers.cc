@@ -50,14 +50,17 @@ class TileHits {
   void find(const FrameSurfaces& surfaces, const Tile& tile) {
     solid_.depth.clear();
     crossings_.clear();
-    if (surfaces.solids != nullptr) render_surface(*surfaces.solids, tile, solid_);
+    if (surfaces.solids != nullptr) {
+      render_surface(*surfaces.solids, tile, solid_);
+      n_ = surfaces.solids->plane.samples;
+    }
     if (surfaces.isosurfaces != nullptr) {
       shade_isosurfaces(*surfaces.isosurfaces, tile, crossings_);
+      n_ = surfaces.isosurfaces->light.plane.samples;
     }
-    n_ = (surfaces.solids != nullptr ? surfaces.solids->plane : surfaces.isosurfaces->light.plane)
-             .samples;
-    width_ = static_cast<std::size_t>(n_ * tile.width);
-    begin_.assign(width_ * static_cast<std::size_t>(n_ * tile.height) + 1, 0);
+    width_ = static_cast<std::size_t>(n_) * static_cast<std::size_t>(tile.width);
+    begin_.assign(width_ * static_cast<std::size_t>(n_) * static_cast<std::size_t>(tile.height) + 1,
+                  0);
     for (const IsosurfaceHit& hit : crossings_) ++begin_[hit.ray + 1];
     std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
   }
@@ -70,8 +73,8 @@ class TileHits {
   void take(int x, int y, std::vector<Hit>& out) const {
     out.clear();
     for (int k = 0; k < n_ * n_; ++k) {
-      const auto i = static_cast<std::size_t>(y * n_ + k / n_) * width_ +
-                     static_cast<std::size_t>(x * n_ + k % n_);
+      const int row = y * n_ + k / n_, column = x * n_ + k % n_;
+      const auto i = static_cast<std::size_t>(row) * width_ + static_cast<std::size_t>(column);
       const auto ray = static_cast<std::size_t>(k);
       if (!solid_.depth.empty() && std::isfinite(solid_.depth[i])) {
         out.push_back({solid_.depth[i], solid_.color[i], 1, ray});

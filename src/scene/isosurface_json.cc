@@ -44,6 +44,7 @@ std::vector<Isosurface> read_isosurfaces(const Value& value) {
     value.expected(fmt::format("an array of at most {} isosurfaces", max_isosurfaces));
   }
   std::vector<Isosurface> isosurfaces;
+  isosurfaces.reserve(items.size());
   for (const Value& item : items) isosurfaces.push_back(read_isosurface(item));
   return isosurfaces;
 }

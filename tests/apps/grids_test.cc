@@ -65,7 +65,7 @@ class Grids : public CommandLine {
 TEST_F(Grids, HaveAPictureWithoutOptions) {
   for (const std::string file : {"h2.cube", "heat.nrrd"}) {
     for (const std::string name : {"trilinear", "tricubic", "tricubic_smoothing"}) {
-      succeed("render " + file + " -o a.npy --size 24x24 --interpolation " + name);
+      succeed(fmt::format("render {} -o a.npy --size 24x24 --interpolation {}", file, name));
       EXPECT_GT(largest_opacity("a.npy"), 0.5) << file;
     }
   }
@@ -97,7 +97,7 @@ TEST_F(Grids, ShareAPictureWithParticles) {
   workspace_.write("s.json", R"({"version": 1, "data": {"path": "a.xyz"}, "fields": [
       {"name": "atoms", "radius": 1}, {"grid": "heat.nrrd", "transfer_function": "magma"}]})");
   for (const std::string engine : {"sweep", "coherent", "direct", "cells"}) {
-    succeed("render s.json -o " + engine + ".npy --size 24x24 --engine " + engine);
+    succeed(fmt::format("render s.json -o {0}.npy --size 24x24 --engine {0}", engine));
     ASSERT_EQ(pixels(engine + ".npy").size(), pixels("sweep.npy").size());
     for (std::size_t i = 0; i < pixels("sweep.npy").size(); ++i) {
       ASSERT_NEAR(pixels(engine + ".npy")[i], pixels("sweep.npy")[i], 1e-3) << engine;

@@ -43,6 +43,7 @@ void make_case(int seed, Case& c) {
     return std::uniform_real_distribution<double>(low, high)(random);
   };
   std::vector<Point3d> points;
+  points.reserve(40);
   for (int i = 0; i < 40; ++i) points.push_back({uniform(-4, 4), uniform(-4, 4), uniform(-4, 4)});
   c.particles = particles_at(points);
   Kernel kernel;

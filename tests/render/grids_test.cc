@@ -42,8 +42,9 @@ FieldSource cube_grid(std::size_t n, double size, const std::function<double(con
   grid.steps = {Vector3d{step, 0, 0}, {0, step, 0}, {0, 0, step}};
   grid.values.resize(grid.size());
   for (std::size_t i = 0; i < grid.size(); ++i) {
-    grid.values[i] =
-        static_cast<float>(f(grid.position(double(i % n), double(i / n % n), double(i / n / n))));
+    const std::size_t x = i % n, y = i / n % n, z = i / n / n;
+    const auto place = [](std::size_t k) { return static_cast<double>(k); };
+    grid.values[i] = static_cast<float>(f(grid.position(place(x), place(y), place(z))));
   }
   FieldSource source;
   source.name = "grid";

@@ -76,7 +76,7 @@ TEST(Isosurface, HidesTheLightOfWhatIsWithin) {
   s.scene.render.clip_planes = {{{0, 0, 1}, 0.9}};
   s.scene.camera.eye = {0, 0, 7};
   const GeometrySource within = ball(0.8F, 0xffffff);
-  const auto brightness = [&](ResolvedScene scene) {
+  const auto brightness = [&](const ResolvedScene& scene) {
     const Framebuffer image = Renderer(s.particles, s.scene.fields, within).render(scene, {});
     return image.pixel(image.width / 2, image.height / 2)[0];
   };

@@ -284,7 +284,10 @@ std::shared_ptr<const Grid> draw_grid(Draw& draw, const Point3d& center, double 
   grid.name = "grid";
   grid.periodic = draw.chance(0.3);
   const auto most = draw.chance(0.5) ? 8 : 30;
-  for (std::size_t& n : grid.dims) n = static_cast<std::size_t>(2 + draw.below(most - 1));
+  for (std::size_t& n : grid.dims) {
+    const int drawn = 2 + draw.below(most - 1);
+    n = static_cast<std::size_t>(drawn);
+  }
   if (grid.periodic && draw.chance(0.3)) grid.dims[1] = 1;
   const Vector3d sides[3] = {{2 * size, 0, 0}, {0, 2 * size, 0}, {0, 0, 2 * size}};
   const double skew = draw.chance(0.5) ? 0 : 0.5;
@@ -298,9 +301,10 @@ std::shared_ptr<const Grid> draw_grid(Draw& draw, const Point3d& center, double 
   const int kind = draw.below(5);
   const Vector3d wave = draw.in_cube();
   for (std::size_t i = 0; i < grid.size(); ++i) {
+    const std::size_t row = i / grid.dims[0], plane = row / grid.dims[1];
     const auto x = static_cast<double>(i % grid.dims[0]);
-    const auto y = static_cast<double>(i / grid.dims[0] % grid.dims[1]);
-    const auto z = static_cast<double>(i / grid.dims[0] / grid.dims[1]);
+    const auto y = static_cast<double>(row % grid.dims[1]);
+    const auto z = static_cast<double>(plane);
     double value = 1;
     if (kind == 1) value = draw.uniform(0, 1);
     if (kind == 2) value = draw.uniform(-1, 1);
