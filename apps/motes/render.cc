@@ -1,7 +1,6 @@
 // motes render: particles to a picture.
 #include <fmt/format.h>
 #include <sys/resource.h>
-#include <tbb/global_control.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -22,6 +21,7 @@
 #include "motes/picture_warnings.h"
 #include "motes/prepare.h"
 #include "motes/scene_options.h"
+#include "motes/thread_limit.h"
 #include "render/render_tile.h"
 #include "render/renderer.h"
 
@@ -99,11 +99,7 @@ Framebuffer render_frames(const Renderer& renderer, const ResolvedScene& scene,
 
 void run(const Options& options) {
   Console console;
-  std::optional<tbb::global_control> limit;
-  if (options.threads > 0) {
-    limit.emplace(tbb::global_control::max_allowed_parallelism,
-                  static_cast<std::size_t>(options.threads));
-  }
+  const ThreadLimit limit(options.threads);
   // Told at once, not after long work: a MOTES_TARGET that is not to be had, an output that cannot
   // be written.
   instruction_set();

@@ -1,6 +1,5 @@
 // motes resample: fields to grids.
 #include <fmt/format.h>
-#include <tbb/global_control.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -23,6 +22,7 @@
 #include "motes/input.h"
 #include "motes/named_files.h"
 #include "motes/scene_options.h"
+#include "motes/thread_limit.h"
 #include "render/render_tile.h"
 #include "scene/fit.h"
 
@@ -120,11 +120,7 @@ Lattice choose_lattice(const Options& options, const Prepared& prepared) {
 
 void run(const Options& options) {
   Console console;
-  std::optional<tbb::global_control> limit;
-  if (options.threads > 0) {
-    limit.emplace(tbb::global_control::max_allowed_parallelism,
-                  static_cast<std::size_t>(options.threads));
-  }
+  const ThreadLimit limit(options.threads);
   // Told at once, not after long work: a MOTES_TARGET that is not to be had, an output that cannot
   // be written.
   instruction_set();

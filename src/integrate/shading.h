@@ -10,10 +10,10 @@ struct ShadingConstants {
   float max_ray_length = 1;  ///< largest |D| of the frame's rays
   float ambient = 1, diffuse = 0, specular = 0,
         shininess = 1;  ///< used where the buffer has gradients
-  bool clipped =
-      false;  ///< there are clip planes: samples outside of rays may be none of the volume
   bool headlight = true;
   float light[3] = {0, 0, -1};  ///< unit vector towards the light, camera axes; unless headlight
+  /// There are clip planes: fields go on before rays' first samples and behind their last.
+  bool clipped = false;
   /// Values may be NaN: there the field is not, and shows nothing.
   bool has_gaps = false;
   std::vector<float> min_radius;  ///< internal length, one a field

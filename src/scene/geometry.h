@@ -58,8 +58,9 @@ struct GeometrySource {
   bool empty() const { return index.empty(); }
 };
 
-/// Whether a GeometrySource's colour is only for want of a field's.
-inline bool by_field(std::uint32_t srgb) { return (srgb & 0x1000000) != 0; }
+/// Set beside a GeometrySource's colour that is only for want of a field's.
+inline constexpr std::uint32_t for_want_of_field = 0x1000000;
+inline bool by_field(std::uint32_t srgb) { return (srgb & for_want_of_field) != 0; }
 
 /// What `geometry` draws of `particles`: of several balls for a particle the last. Where sticks
 /// meet there is a ball of their radius at least. Particles whose position is not finite or whose

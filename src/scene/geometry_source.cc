@@ -87,7 +87,7 @@ std::vector<std::uint32_t> colors_of(const ParticleSet& particles, const Geometr
     std::transform(index.begin(), index.end(), colors.begin(),
                    [&](std::uint32_t i) { return of_species[particles.species[i]]; });
   }
-  for (std::uint32_t& color : colors) color |= of_field ? 0x1000000u : 0u;
+  for (std::uint32_t& color : colors) color |= of_field ? for_want_of_field : 0;
   return colors;
 }
 

@@ -66,7 +66,7 @@ TEST(Geometry, HasTheColoursOfTheFirstFieldThatHasTheParticle) {
   s.scene.render.surface = {1, 0, {}, false, 0};
   s.scene.render.lighting.enabled = false;
   GeometrySource geometry = balls({0, 1, 2}, 1.5F);
-  for (std::uint32_t& color : geometry.srgb) color |= 0x1000000;
+  for (std::uint32_t& color : geometry.srgb) color |= for_want_of_field;
   const Renderer renderer(s.particles, s.scene.fields, geometry);
   const Framebuffer image = renderer.render(s.scene, {});
   const auto expect_color = [&](double x, const Color& expected) {

@@ -1,6 +1,5 @@
 // motes bench: the options, and which benchmark they are for.
 #include <fmt/format.h>
-#include <tbb/global_control.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -17,6 +16,7 @@
 #include "motes/commands.h"
 #include "motes/count_option.h"
 #include "motes/scene_options.h"
+#include "motes/thread_limit.h"
 #include "render/render_tile.h"
 
 namespace motes {
@@ -124,11 +124,7 @@ std::vector<const BenchScene*> scenes_of(const Benchmark& benchmark,
 
 void run(const Options& options) {
   instruction_set();  // tells at once of a MOTES_TARGET that is not to be had
-  std::optional<tbb::global_control> limit;
-  if (options.bench.threads > 0) {
-    limit.emplace(tbb::global_control::max_allowed_parallelism,
-                  static_cast<std::size_t>(options.bench.threads));
-  }
+  const ThreadLimit limit(options.bench.threads);
   std::optional<std::size_t> memory;
   if (options.memory_gib) memory = static_cast<std::size_t>(*options.memory_gib * 0x1p30);
   const Workplace workplace(options.data, options.output, memory);

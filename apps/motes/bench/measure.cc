@@ -48,8 +48,8 @@ Input read_bench_particles(const BenchJob& job, const BenchScene& scene, Console
   return input;
 }
 
-PreparedScene prepare_bench_scene(const BenchJob& job, const BenchScene& entry, Console& console) {
-  const Input input = read_bench_particles(job, entry, console);
+PreparedScene prepare_bench_scene(const BenchJob& job, const BenchScene& entry, const Input& input,
+                                  Console& console) {
   Scene scene = job.workplace.open(entry);
   scene.render.width = job.options.width;
   scene.render.height = job.options.height;
@@ -57,6 +57,18 @@ PreparedScene prepare_bench_scene(const BenchJob& job, const BenchScene& entry, 
       prepare_scene(scene, input.particles, job.workplace.scene_file(entry), {}, console);
   prepared.read_ms = input.read_ms;
   return prepared;
+}
+
+PreparedScene prepare_bench_scene(const BenchJob& job, const BenchScene& entry, Console& console) {
+  return prepare_bench_scene(job, entry, read_bench_particles(job, entry, console), console);
+}
+
+nlohmann::ordered_json describe_view(const BenchJob& job, const BenchScene& scene,
+                                     std::string_view view) {
+  return {{"scene", scene.name},
+          {"view", view},
+          {"scene_file", job.workplace.scene_file(scene).string()},
+          {"data", job.workplace.particle_file(scene).string()}};
 }
 
 Camera moved_closer(const Camera& camera, double fraction) {

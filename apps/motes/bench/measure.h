@@ -6,6 +6,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "motes/bench/benchmarks.h"
@@ -20,8 +21,15 @@ namespace motes {
 /// the file holds another number of them than the scene should have.
 Input read_bench_particles(const BenchJob& job, const BenchScene& scene, Console& console);
 
-/// The scene, ready, in the size of the job.
+/// The scene of these particles, ready, in the size of the job.
+PreparedScene prepare_bench_scene(const BenchJob& job, const BenchScene& scene, const Input& input,
+                                  Console& console);
+/// The same, of the particles that it reads.
 PreparedScene prepare_bench_scene(const BenchJob& job, const BenchScene& scene, Console& console);
+
+/// What results say first: the scene, its view ("far" or "close"), and the files of both.
+nlohmann::ordered_json describe_view(const BenchJob& job, const BenchScene& scene,
+                                     std::string_view view);
 
 /// `camera` gone towards its target until `fraction` of the distance is left.
 Camera moved_closer(const Camera& camera, double fraction);

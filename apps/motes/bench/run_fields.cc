@@ -177,17 +177,15 @@ void print(const Row& row) {
 }
 
 nlohmann::ordered_json to_json(const Row& row, const BenchJob& job) {
-  return {{"scene", row.scene->name},
-          {"view", row.view()},
-          {"scene_file", job.workplace.scene_file(*row.scene).string()},
-          {"data", job.workplace.particle_file(*row.scene).string()},
-          {"fields", row.num_fields},
-          {"one_field", to_json(row.one)},
-          {"one_field_extinction_factor", row.extinction},
-          {"shared", to_json(row.shared)},
-          {"doubled", to_json(row.doubled)},
-          {"each_additional_field", row.each_more()},
-          {"second_field", row.second()}};
+  nlohmann::ordered_json out = describe_view(job, *row.scene, row.view());
+  out.update({{"fields", row.num_fields},
+              {"one_field", to_json(row.one)},
+              {"one_field_extinction_factor", row.extinction},
+              {"shared", to_json(row.shared)},
+              {"doubled", to_json(row.doubled)},
+              {"each_additional_field", row.each_more()},
+              {"second_field", row.second()}});
+  return out;
 }
 
 }  // namespace

@@ -79,14 +79,10 @@ struct SceneInShapes {
 
 SceneInShapes make_shapes(const BenchJob& job, const BenchScene& entry, Console& console) {
   const Input input = read_bench_particles(job, entry, console);
-  Scene scene = job.workplace.open(entry);
-  scene.render.width = job.options.width;
-  scene.render.height = job.options.height;
-  PreparedScene prepared =
-      prepare_scene(scene, input.particles, job.workplace.scene_file(entry), {}, console);
+  const PreparedScene prepared = prepare_bench_scene(job, entry, input, console);
   const auto sources =
       make_field_sources(input.particles, expand_fields(prepared.filled_in, input.particles),
-                         scene.kernel, console.warnings(), &console);
+                         prepared.filled_in.kernel, console.warnings(), &console);
   SceneInShapes all{prepared.resolved, {}};
   // No ray ends before the volume does: all shapes are sampled at the same places.
   all.scene.render.termination_opacity = 1;
@@ -129,15 +125,13 @@ void print(const Row& row) {
 }
 
 nlohmann::ordered_json to_json(const Row& row, const BenchJob& job) {
-  return {{"scene", row.scene->name},
-          {"view", row.view()},
-          {"scene_file", job.workplace.scene_file(*row.scene).string()},
-          {"data", job.workplace.particle_file(*row.scene).string()},
-          {"kernel", row.kernel},
-          {"lit", to_json(row.lit)},
-          {"unlit", to_json(row.unlit)},
-          {"lit_over_gaussian", row.lit_ratio},
-          {"unlit_over_gaussian", row.unlit_ratio}};
+  nlohmann::ordered_json out = describe_view(job, *row.scene, row.view());
+  out.update({{"kernel", row.kernel},
+              {"lit", to_json(row.lit)},
+              {"unlit", to_json(row.unlit)},
+              {"lit_over_gaussian", row.lit_ratio},
+              {"unlit_over_gaussian", row.unlit_ratio}});
+  return out;
 }
 
 }  // namespace

@@ -144,22 +144,20 @@ nlohmann::ordered_json to_json(const Row& row, const BenchJob& job) {
     stages[stage_names[s]] = row.frame.stages.fraction(static_cast<Stage>(s));
   }
   const double lanes = row.lanes();
-  return {{"scene", row.scene->name},
-          {"view", row.view()},
-          {"scene_file", job.workplace.scene_file(*row.scene).string()},
-          {"data", job.workplace.particle_file(*row.scene).string()},
-          {"lighting", row.lit},
-          {"sweep", to_json(row.frame)},
-          {"stages", stages},
-          {"evaluations_inside", or_null(row.inside())},
-          {"peak_fraction_inside", or_null(of_inside(row, &Row::of_frame))},
-          {"peak_fraction_lanes", row.of_frame(lanes)},
-          {"peak_fraction_inside_in_sums", or_null(of_inside(row, &Row::of_sums))},
-          {"peak_fraction_lanes_in_sums", row.of_sums(lanes)},
-          {"ticks_per_lane", row.ticks_each(lanes)},
-          {"ticks_per_evaluation_inside", or_null(of_inside(row, &Row::ticks_each))},
-          {"data_bytes", row.data_bytes},
-          {"time_fraction_of_reading_data_once", row.of_reading()}};
+  nlohmann::ordered_json out = describe_view(job, *row.scene, row.view());
+  out.update({{"lighting", row.lit},
+              {"sweep", to_json(row.frame)},
+              {"stages", stages},
+              {"evaluations_inside", or_null(row.inside())},
+              {"peak_fraction_inside", or_null(of_inside(row, &Row::of_frame))},
+              {"peak_fraction_lanes", row.of_frame(lanes)},
+              {"peak_fraction_inside_in_sums", or_null(of_inside(row, &Row::of_sums))},
+              {"peak_fraction_lanes_in_sums", row.of_sums(lanes)},
+              {"ticks_per_lane", row.ticks_each(lanes)},
+              {"ticks_per_evaluation_inside", or_null(of_inside(row, &Row::ticks_each))},
+              {"data_bytes", row.data_bytes},
+              {"time_fraction_of_reading_data_once", row.of_reading()}});
+  return out;
 }
 
 /// The bars that the logarithmic axis can show.

@@ -175,28 +175,25 @@ nlohmann::ordered_json to_json(const Pair& pair) {
 
 nlohmann::ordered_json to_json(const Row& row, const BenchJob& job, const PreparedScene& prepared) {
   const auto triple = [](const auto& v) { return nlohmann::json{v.x, v.y, v.z}; };
-  nlohmann::ordered_json out{{"scene", row.scene->name},
-                             {"view", row.view()},
-                             {"scene_file", job.workplace.scene_file(*row.scene).string()},
-                             {"data", job.workplace.particle_file(*row.scene).string()},
-                             {"particles", prepared.renderer.kernels().size()},
-                             {"fields", prepared.renderer.kernels().fields.size()},
-                             {"eye", triple(row.camera.eye)},
-                             {"target", triple(row.camera.target)},
-                             {"step_size", prepared.resolved.step_size},
-                             {"mean_opacity", row.lit.sweep.opacity},
-                             {"samples_per_ray", row.lit.sweep.samples_per_ray},
-                             {"lit", to_json(row.lit)},
-                             {"direct", nullptr},
-                             {"cells", nullptr},
-                             {"structured", nullptr},
-                             {"structured_bytes", row.structured_bytes},
-                             {"unlit", to_json(row.unlit)},
-                             {"lit_over_unlit", row.lit_over_unlit()},
-                             {"paper_cpu_fps", nullptr},
-                             {"paper_mic_fps", nullptr},
-                             {"paper_structured_cpu_fps", nullptr},
-                             {"paper_structured_mic_fps", nullptr}};
+  nlohmann::ordered_json out = describe_view(job, *row.scene, row.view());
+  out.update({{"particles", prepared.renderer.kernels().size()},
+              {"fields", prepared.renderer.kernels().fields.size()},
+              {"eye", triple(row.camera.eye)},
+              {"target", triple(row.camera.target)},
+              {"step_size", prepared.resolved.step_size},
+              {"mean_opacity", row.lit.sweep.opacity},
+              {"samples_per_ray", row.lit.sweep.samples_per_ray},
+              {"lit", to_json(row.lit)},
+              {"direct", nullptr},
+              {"cells", nullptr},
+              {"structured", nullptr},
+              {"structured_bytes", row.structured_bytes},
+              {"unlit", to_json(row.unlit)},
+              {"lit_over_unlit", row.lit_over_unlit()},
+              {"paper_cpu_fps", nullptr},
+              {"paper_mic_fps", nullptr},
+              {"paper_structured_cpu_fps", nullptr},
+              {"paper_structured_mic_fps", nullptr}});
   if (row.direct) out["direct"] = to_json(*row.direct);
   if (row.cells) out["cells"] = to_json(*row.cells);
   if (row.structured) out["structured"] = to_json(*row.structured);
