@@ -1,0 +1,40 @@
+import { expect, it } from "vitest";
+import type { Scene } from "../protocol/scene";
+import { newFieldName, setGeometry, styleOf, withStyle } from "./edit";
+
+const points = { points: [{ value: 0, color: "#000000", extinction: 1 }] };
+const volume: Scene = {
+  version: 1,
+  fields: [{ name: "a", transfer_function: points, isosurfaces: [] }],
+};
+const balls: Scene = { version: 1, fields: [], geometry: [{ type: "spheres" }] };
+const surface: Scene = { version: 1, fields: [{ name: "surface", isosurfaces: [{ value: 0.5 }] }] };
+const both: Scene = { ...volume, geometry: [{ type: "spheres" }, { type: "sticks" }] };
+
+it("knows styles", () => {
+  expect([volume, balls, surface, both].map(styleOf)).toEqual([
+    "volume",
+    "spheres",
+    "surface",
+    "volume+balls",
+  ]);
+});
+
+it("brings the fields back that a style had taken away", () => {
+  expect(withStyle(volume, "spheres", [])).toEqual({ version: 1, style: "spheres" });
+  const back = withStyle(balls, "volume", [surface, volume, surface]);
+  expect(back).toEqual({
+    version: 1,
+    style: "volume",
+    fields: [{ name: "a", transfer_function: points }],
+  });
+  expect(withStyle(balls, "volume", [surface])).toEqual({ version: 1, style: "volume" });
+});
+
+it("leaves no empty geometry", () => {
+  expect(setGeometry(() => [])(balls)).toEqual({ version: 1, fields: [] });
+});
+
+it("finds free names", () => {
+  expect(newFieldName([{ name: "all" }, { name: "all 2" }], "all")).toBe("all 3");
+});

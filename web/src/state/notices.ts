@@ -1,0 +1,25 @@
+// Short messages to the user; they go away by themselves, faults later than news.
+import { signal } from "@preact/signals";
+
+export interface Notice {
+  id: number;
+  kind: "news" | "warning" | "error";
+  text: string;
+}
+
+const lifeMs = { news: 4000, warning: 10000, error: 10000 };
+const mostShown = 4;
+
+export const notices = signal<Notice[]>([]);
+let lastId = 0;
+
+export function dismiss(id: number): void {
+  notices.value = notices.value.filter((notice) => notice.id !== id);
+}
+
+export function notify(kind: Notice["kind"], text: string): void {
+  const id = ++lastId;
+  const others = notices.value.filter((notice) => notice.text !== text);
+  notices.value = [...others, { id, kind, text }].slice(-mostShown);
+  setTimeout(() => dismiss(id), lifeMs[kind]);
+}

@@ -1,0 +1,97 @@
+// This page's camera: every change goes to the server, at most one in each frame of the display.
+import { computed, effect, signal } from "@preact/signals";
+import { between } from "../camera/camera";
+import { connectionState, nextSequence, onMessage, send } from "../protocol/connection";
+import type { Camera } from "../protocol/scene";
+import { following, hello } from "./session";
+
+export const camera = signal<Camera | null>(null);
+/** Of the picture, in pixels of the device. */
+export const size = signal({ width: 0, height: 0 });
+/** Whether the camera moves, so that what costs time can wait. */
+export const moving = signal(false);
+
+const restMs = 150;
+const glideMs = 350;
+
+let scheduled = 0;
+let restTimer = 0;
+let gliding = 0;
+
+export const aspect = computed(() => size.value.width / Math.max(1, size.value.height));
+
+function sendView(): void {
+  scheduled = 0;
+  const present = camera.peek();
+  if (!present) return;
+  const sequence = nextSequence();
+  send({ type: "view", sequence, camera: present, moving: moving.peek() });
+}
+
+function schedule(): void {
+  scheduled ||= requestAnimationFrame(sendView);
+}
+
+/** The interaction has ended: the server may refine the picture. */
+export function rest(): void {
+  clearTimeout(restTimer);
+  if (!moving.peek()) return;
+  moving.value = false;
+  schedule();
+}
+
+/** Shows another view. Without `rest()` it counts as moving until nothing comes for a while. */
+export function moveCamera(next: Camera, held = false): void {
+  cancelAnimationFrame(gliding);
+  camera.value = next;
+  moving.value = true;
+  schedule();
+  clearTimeout(restTimer);
+  if (!held) restTimer = window.setTimeout(rest, restMs);
+}
+
+export function changeCamera(change: (camera: Camera) => Camera, held = false): void {
+  if (camera.peek()) moveCamera(change(camera.peek()!), held);
+}
+
+/** Goes to another view in a short movement, or at once where the user wants none. */
+export function glideTo(end: Camera): void {
+  const start = camera.peek();
+  if (!start || matchMedia("(prefers-reduced-motion: reduce)").matches) {
+    moveCamera(end);
+    return;
+  }
+  const begun = performance.now();
+  const step = (now: number) => {
+    const t = Math.min(1, Math.max(0, (now - begun) / glideMs));
+    moveCamera(between(start, end, t * t * (3 - 2 * t)), t < 1);
+    if (t < 1) gliding = requestAnimationFrame(step);
+    else rest();
+  };
+  cancelAnimationFrame(gliding);
+  gliding = requestAnimationFrame(step);
+}
+
+export function fit(): void {
+  send({ type: "fit" });
+}
+
+effect(() => {
+  const { width, height } = size.value;
+  if (width > 0 && connectionState.value.kind === "open") send({ type: "size", width, height });
+});
+
+// A new connection knows nothing of this page's view.
+effect(() => {
+  if (connectionState.value.kind === "open" && camera.peek()) schedule();
+});
+
+onMessage("camera", (message) => {
+  if (following.value !== null && message.client === following.value) {
+    // Not sent: a view of its own would end the following.
+    cancelAnimationFrame(gliding);
+    camera.value = message.camera;
+  } else if (message.client === hello.value?.client) {
+    glideTo(message.camera);
+  }
+});
