@@ -1,8 +1,10 @@
 // Starts the page.
+import { effect } from "@preact/signals";
 import { render } from "preact";
 import { Page } from "./page";
 import { connect } from "./protocol/connection";
 import { listenForKeys } from "./state/shortcuts";
+import { size } from "./state/view";
 import "./styles/base.css";
 import "./styles/controls.css";
 import "./styles/overlay.css";
@@ -10,4 +12,11 @@ import "./styles/panel.css";
 
 render(<Page />, document.getElementById("page")!);
 listenForKeys();
-connect();
+
+// The size of the picture is the first thing that the server is told.
+let begun = false;
+effect(() => {
+  if (begun || size.value.width === 0) return;
+  begun = true;
+  connect();
+});

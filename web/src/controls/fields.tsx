@@ -2,6 +2,7 @@
 import type { ComponentChildren } from "preact";
 import { useId, useState } from "preact/hooks";
 import { hexOf } from "../scene/color";
+import { formatNumber } from "../scene/format";
 import type { Color } from "../protocol/scene";
 import { NumberField, type NumberFieldProps } from "./number_field";
 
@@ -34,44 +35,60 @@ export function NumberRow(props: NumberFieldProps & { unit?: string }) {
   );
 }
 
-interface SliderProps extends NumberFieldProps {
+interface TrackProps {
+  label: string;
+  value: number;
   min: number;
   max: number;
   /** Equal ways are equal factors. */
   log?: boolean;
+  whole?: boolean;
+  onChange: (value: number) => void;
+  id?: string;
 }
 
-const sliderSteps = 400;
+const trackSteps = 400;
 
-/** A slider over the usual values; the number beside it takes others too, from `min` on. */
-export function Slider(props: SliderProps & { hardMax?: number }) {
-  const { label, value, min, max, log, whole, hardMax, onChange } = props;
-  const id = useId();
+/** The usual values of a number, to be slid over. */
+export function SliderTrack({ label, value, min, max, log, whole, onChange, id }: TrackProps) {
+  const steps = whole ? max - min : trackSteps;
   const place = log ? Math.log(value / min) / Math.log(max / min) : (value - min) / (max - min);
-  const at = (t: number) => {
+  const filled = Math.min(1, Math.max(0, place || 0));
+  const slide = (t: number) => {
     const exact = log ? min * (max / min) ** t : min + t * (max - min);
-    return whole ? Math.round(exact) : Number(exact.toPrecision(3));
+    onChange(whole ? Math.round(exact) : Number(exact.toPrecision(3)));
   };
-  const filled = Math.min(1, Math.max(0, place));
+  return (
+    <input
+      id={id}
+      type="range"
+      aria-label={label}
+      min={0}
+      max={steps}
+      step={1}
+      value={filled * steps}
+      style={{ "--filled": `${100 * filled}%` }}
+      aria-valuetext={formatNumber(value)}
+      onInput={(event) => slide(Number(event.currentTarget.value) / steps)}
+    />
+  );
+}
+
+interface SliderProps extends TrackProps {
+  /** The number beside the slider takes more than the usual values. */
+  hardMin?: number;
+  hardMax?: number;
+}
+
+export function Slider({ hardMin, hardMax, ...track }: SliderProps) {
+  const id = useId();
   return (
     <div class="slider-row">
       <label class="row-label" for={id}>
-        {label}
+        {track.label}
       </label>
-      <NumberField {...props} max={hardMax} />
-      <input
-        id={id}
-        type="range"
-        min={0}
-        max={whole ? max - min : sliderSteps}
-        step={1}
-        value={filled * (whole ? max - min : sliderSteps)}
-        style={{ "--filled": `${100 * filled}%` }}
-        aria-valuetext={String(value)}
-        onInput={(event) =>
-          onChange(at(Number(event.currentTarget.value) / (whole ? max - min : sliderSteps)))
-        }
-      />
+      <NumberField {...track} min={hardMin} max={hardMax} />
+      <SliderTrack {...track} id={id} />
     </div>
   );
 }

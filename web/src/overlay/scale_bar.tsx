@@ -4,14 +4,15 @@ import { formatNumber, roundedDown, unitSign } from "../scene/format";
 import { data } from "../state/document";
 import { camera, size } from "../state/view";
 
-const longestPixels = 150;
+const longest = 10; // rem
 
 export function ScaleBar() {
   const view = camera.value;
   const { height } = size.value;
   if (!view || height === 0 || !data.value) return null;
-  const perPixel = viewHeight(view) / (height / devicePixelRatio);
-  const barLength = roundedDown(longestPixels * perPixel);
+  const rem = parseFloat(getComputedStyle(document.documentElement).fontSize);
+  const perRem = (viewHeight(view) / (height / devicePixelRatio)) * rem;
+  const barLength = roundedDown(longest * perRem);
   const where = view.fov === undefined ? "" : " at the centre's depth";
   const text = `${formatNumber(barLength)} ${unitSign(data.value.length_unit)}`.trim();
   return (
@@ -22,7 +23,7 @@ export function ScaleBar() {
       aria-label={`Scale: ${text}${where}`}
     >
       <span>{text}</span>
-      <div style={{ width: `${barLength / perPixel}px` }} />
+      <div style={{ width: `${barLength / perRem}rem` }} />
     </div>
   );
 }

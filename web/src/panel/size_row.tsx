@@ -1,5 +1,6 @@
 // A radius or weight: a number, or the name of a property of the particles.
-import { Select, Slider } from "../controls/fields";
+import { NumberField } from "../controls/number_field";
+import { Select, SliderTrack } from "../controls/fields";
 import { data } from "../state/document";
 
 interface SizeRowProps {
@@ -9,6 +10,7 @@ interface SizeRowProps {
   names: string[];
   /** In the middle of the slider. */
   typical: number;
+  /** Whether it may be 0 or less. */
   signed?: boolean;
   onChange: (value: number | string) => void;
 }
@@ -18,35 +20,39 @@ const words: Record<string, string> = {
   covalent: "covalent radii",
 };
 
-const asNumber = "\u0000";
+// No property has this name.
+const oneForAll = "\u0000";
 
 export function SizeRow({ label, value, names, typical, signed, onChange }: SizeRowProps) {
   const properties = data.value?.properties.map(({ name }) => name) ?? [];
   const known = [...new Set([...names, ...properties])];
   if (typeof value === "string" && !known.includes(value)) known.push(value);
   const choices = [
-    { value: asNumber, label: "one for all" },
+    { value: oneForAll, label: "one for all" },
     ...known.map((name) => ({ value: name, label: words[name] ?? name })),
   ];
+  const setNumber = (next: number) => {
+    if (signed || next > 0) onChange(next);
+  };
+  const range = signed
+    ? { min: -2 * typical, max: 2 * typical }
+    : { min: typical / 8, max: 8 * typical, log: true };
   return (
     <div class="size-row">
-      <Select
-        label={`${label}: from where`}
-        value={typeof value === "string" ? value : asNumber}
-        choices={choices}
-        onChange={(choice) => onChange(choice === asNumber ? typical : choice)}
-      />
-      {typeof value === "number" ? (
-        <Slider
-          label={label}
-          value={value}
-          min={signed ? -2 * typical : typical / 8}
-          max={signed ? 2 * typical : typical * 8}
-          log={!signed}
-          onChange={(next) => (signed || next > 0 ? onChange(next) : undefined)}
+      <div class="row">
+        <span class="row-label">{label}</span>
+        <Select
+          label={`${label}: from where`}
+          value={typeof value === "string" ? value : oneForAll}
+          choices={choices}
+          onChange={(choice) => onChange(choice === oneForAll ? typical : choice)}
         />
-      ) : (
-        <div class="row-label">{label}</div>
+        {typeof value === "number" && (
+          <NumberField label={label} value={value} onChange={setNumber} />
+        )}
+      </div>
+      {typeof value === "number" && (
+        <SliderTrack label={label} value={value} {...range} onChange={setNumber} />
       )}
     </div>
   );

@@ -80,10 +80,14 @@ function curvePath({ points }: TransferFunction, layout: Layout): string {
   return `M${inset.left} ${first}${inner.join("")}L${right} ${last}`;
 }
 
+/** Drawn in units of which `height` make up the element's, whatever the size of text makes that. */
 function useWidth(svg: { current: SVGSVGElement | null }): number {
   const [width, setWidth] = useState(300);
   useLayoutEffect(() => {
-    const observer = new ResizeObserver(([entry]) => setWidth(entry!.contentRect.width));
+    const observer = new ResizeObserver(([entry]) => {
+      const box = entry!.contentRect;
+      setWidth((box.width * height) / box.height);
+    });
     observer.observe(svg.current!);
     return () => observer.disconnect();
   }, []);
@@ -155,9 +159,10 @@ function useDrag(props: EditorProps, layout: Layout, setFrozen: (layout: Layout 
   const dragged = useRef<number | null>(null);
   const at = (event: PointerEvent) => {
     const box = (event.currentTarget as SVGElement).getBoundingClientRect();
-    const t = (event.clientX - box.left - inset.left) / (layout.width - inset.left - inset.right);
-    const up =
-      (box.top + height - inset.bottom - event.clientY) / (height - inset.top - inset.bottom);
+    const x = ((event.clientX - box.left) * height) / box.height;
+    const y = ((event.clientY - box.top) * height) / box.height;
+    const t = (x - inset.left) / (layout.width - inset.left - inset.right);
+    const up = (height - inset.bottom - y) / (height - inset.top - inset.bottom);
     return {
       value: valueAt(Math.min(1.2, Math.max(-0.2, t)), layout.axis),
       extinction: up * layout.top,
@@ -233,7 +238,7 @@ export function TransferEditor(props: EditorProps) {
     <svg
       ref={svg}
       class="editor"
-      height={height}
+      viewBox={`0 0 ${width} ${height}`}
       role="group"
       aria-label={`Transfer function${scale}: extinction over the field's value`}
       {...drag}

@@ -62,17 +62,23 @@ function PointRow({
         value={point.color}
         onChange={(color) => onChange(recolorPoint(transfer, selected, color), `color${selected}`)}
       />
-      <NumberField
-        label="Value of the point"
-        value={point.value}
-        onChange={(value) => move({ value })}
-      />
-      <NumberField
-        label="Extinction of the point"
-        value={point.extinction}
-        min={0}
-        onChange={(extinction) => move({ extinction })}
-      />
+      <label>
+        Value
+        <NumberField
+          label="Value of the point"
+          value={point.value}
+          onChange={(value) => move({ value })}
+        />
+      </label>
+      <label>
+        Extinction
+        <NumberField
+          label="Extinction of the point"
+          value={point.extinction}
+          min={0}
+          onChange={(extinction) => move({ extinction })}
+        />
+      </label>
       <IconButton icon="add" label="Add a point" onClick={add} />
       <IconButton
         icon="trash"

@@ -3,11 +3,12 @@
 import { computed, effect, signal } from "@preact/signals";
 import { connectionState, nextSequence, onMessage, send } from "../protocol/connection";
 import type { Data } from "../protocol/messages";
-import type { Scene } from "../protocol/scene";
+import { centre, zoom } from "../camera/camera";
+import type { Camera, Scene } from "../protocol/scene";
 import { type History, amend, begin, record, redo, undo, withdraw } from "../scene/history";
 import { notify } from "./notices";
 import { hello } from "./session";
-import { camera, moveCamera, size } from "./view";
+import { aspect, camera, moveCamera, size } from "./view";
 
 const history = signal<History<Scene> | null>(null);
 
@@ -119,6 +120,12 @@ function takeOver(scene: Scene): void {
   }
 }
 
+/** Farther away where the window is narrower than the scene's picture, so that it holds as much. */
+function framed(camera: Camera, of: [number, number] = [1, 1]): Camera {
+  const narrower = of[0] / of[1] / aspect.peek();
+  return narrower > 1 && Number.isFinite(narrower) ? zoom(camera, narrower, centre) : camera;
+}
+
 onMessage("scene", (message) => {
   const first = !history.peek();
   const otherData = message.data.file !== data.peek()?.file;
@@ -134,7 +141,7 @@ onMessage("scene", (message) => {
   }
   if (message.scene.camera && (first || message.new_data || otherData || takesCamera)) {
     takesCamera = false;
-    moveCamera(message.scene.camera);
+    moveCamera(framed(message.scene.camera, message.scene.render?.size));
   }
 });
 
