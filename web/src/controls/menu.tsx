@@ -67,7 +67,7 @@ export function Menu({ icon, label, face, class: extra, children }: MenuProps) {
       <button
         type="button"
         class={face ? "button" : "icon-button"}
-        aria-label={face ? undefined : label}
+        aria-label={label}
         aria-haspopup="menu"
         aria-expanded={open}
         title={label}

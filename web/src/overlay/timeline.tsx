@@ -77,7 +77,7 @@ export function Timeline() {
       />
       <Menu
         class="up"
-        label="Speed"
+        label={`Speed: ${speed.value}/s`}
         face={
           <>
             {speed.value}/s <Icon name="chevronDown" />

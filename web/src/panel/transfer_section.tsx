@@ -94,7 +94,7 @@ function MapMenu({ transfer, onChange, onFit }: EditProps & { onFit: (map: strin
   return (
     <Menu
       class="map-menu"
-      label="Colour map"
+      label="Colours"
       face={
         <>
           <span class="swatch" style={{ background: gradientOf(transfer, "to right") }} /> Colours
@@ -115,7 +115,7 @@ function MapMenu({ transfer, onChange, onFit }: EditProps & { onFit: (map: strin
         </MenuItem>
       ))}
       <hr />
-      <MenuItem label="Fit colours and opacity anew" onClick={() => onFit("viridis")} />
+      <MenuItem label="viridis, fitted to the view" onClick={() => onFit("viridis")} />
     </Menu>
   );
 }

@@ -132,5 +132,6 @@ describe("as a whole", () => {
     expect(log.points[0]!.extinction).toBeCloseTo(1, 12);
     expect(extentOf(log).scale).toBe("log");
     expect(values(withScale(log, "linear", 0))).toEqual([0.5, 1, 4]);
+    expect(values(withScale(log, "log", 0.1))).toEqual([0.5, 1, 4]);
   });
 });

@@ -180,6 +180,7 @@ export function withScale(
 ): TransferFunction {
   if (scale === "linear") return { ...transfer, scale };
   const positive = transfer.points.filter((point) => point.value > leastPositive);
+  if (positive.length === transfer.points.length) return { ...transfer, scale };
   const first = { ...sample(transfer, leastPositive), value: leastPositive };
   return { scale, points: [{ ...first, color: hexOf(first.color) }, ...positive] };
 }
