@@ -3,6 +3,7 @@ import { effect } from "@preact/signals";
 import { render } from "preact";
 import { Page } from "./page";
 import { connect } from "./protocol/connection";
+import { data } from "./state/document";
 import { listenForKeys } from "./state/shortcuts";
 import { size } from "./state/view";
 import "./styles/base.css";
@@ -12,6 +13,10 @@ import "./styles/panel.css";
 
 render(<Page />, document.getElementById("page")!);
 listenForKeys();
+
+effect(() => {
+  document.title = data.value ? `${data.value.file} – Motes` : "Motes";
+});
 
 // The size of the picture is the first thing that the server is told.
 let begun = false;

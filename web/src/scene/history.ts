@@ -33,13 +33,6 @@ export function amend<T>(history: History<T>, present: T): History<T> {
   return { ...history, present };
 }
 
-/** As if the present state had never been. */
-export function withdraw<T>(history: History<T>): History<T> {
-  const previous = history.past.at(-1);
-  if (previous === undefined) return history;
-  return { ...history, past: history.past.slice(0, -1), present: previous, group: null };
-}
-
 export function undo<T>(history: History<T>): History<T> {
   const previous = history.past.at(-1);
   if (previous === undefined) return history;

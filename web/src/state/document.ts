@@ -5,7 +5,7 @@ import { connectionState, nextSequence, onMessage, send } from "../protocol/conn
 import type { Data } from "../protocol/messages";
 import { centre, zoom } from "../camera/camera";
 import type { Camera, Scene } from "../protocol/scene";
-import { type History, amend, begin, record, redo, undo, withdraw } from "../scene/history";
+import { type History, amend, begin, record, redo, undo } from "../scene/history";
 import { notify } from "./notices";
 import { hello } from "./session";
 import { aspect, camera, moveCamera, size } from "./view";
@@ -21,14 +21,19 @@ export const pastScenes = computed(() => history.value?.past ?? []);
 /** Sequence of the newest scene that was sent. */
 export const sentSequence = signal(0);
 
-let inFlight: number | null = null;
+/** The edit that the server is at, and the history that ended with it. */
+let inFlight: { sequence: number; history: History<Scene> } | null = null;
+/** Whether there are newer edits. */
 let waiting = false;
+/** As far as the server has agreed: where a refused edit leads back to. */
+let agreed: History<Scene> | null = null;
+/** Whether the scene that is sent comes with a camera of its own. */
 let takesCamera = false;
 
 /** The scene as it looks on this page: what is saved, copied and sent. */
 export function presentScene(): Scene | null {
   const present = scene.peek();
-  if (!present) return null;
+  if (!present || takesCamera) return present;
   const { width, height } = size.peek();
   return {
     ...present,
@@ -49,7 +54,7 @@ function transmit(): void {
   } else if (present) {
     const sequence = nextSequence();
     if (!send({ type: "scene", sequence, scene: present })) return;
-    inFlight = sequence;
+    inFlight = { sequence, history: history.peek()! };
     sentSequence.value = sequence;
   }
 }
@@ -77,26 +82,35 @@ export function loadScene(loaded: Scene): void {
   edit(() => loaded);
 }
 
+/** Time is not undone: of the same data the step that is shown stays. */
+function atPresentFrame(scene: Scene, present: Scene): Scene {
+  if (!scene.data || scene.data.path !== present.data?.path) return scene;
+  return { ...scene, data: { ...scene.data, frame: present.data.frame } };
+}
+
 function travel(step: (history: History<Scene>) => History<Scene>): void {
   const before = history.peek();
   if (!before) return;
   const after = step(before);
   if (after === before) return;
-  // Time is not undone: the step that is shown stays.
-  const { data } = after.present;
-  const frame = before.present.data?.frame;
-  history.value = amend(
-    after,
-    data ? { ...after.present, data: { ...data, frame } } : after.present,
-  );
+  takesCamera ||= after.present.data?.path !== before.present.data?.path;
+  history.value = amend(after, atPresentFrame(after.present, before.present));
   transmit();
 }
 
 export const undoEdit = (): void => travel(undo);
 export const redoEdit = (): void => travel(redo);
 
-/** The next edit that waited, if one did. */
-function next(): boolean {
+/** Agrees with the server about all that is shown. */
+function settle(settled: History<Scene>): void {
+  inFlight = null;
+  waiting = false;
+  agreed = settled;
+  history.value = settled;
+}
+
+/** Sends the newest edit, if one waited for the answer that has come. */
+function sendWaiting(): boolean {
   inFlight = null;
   if (!waiting) return false;
   waiting = false;
@@ -104,20 +118,23 @@ function next(): boolean {
   return true;
 }
 
-function adopt(scene: Scene): void {
-  history.value = history.peek() ? amend(history.peek()!, scene) : begin(scene);
+function isAnswer(message: { sequence: number | null }): boolean {
+  return message.sequence !== null && message.sequence === inFlight?.sequence;
+}
+
+/** What an edit of this page came to. */
+function takeAnswer(scene: Scene): void {
+  agreed = amend(inFlight!.history, scene);
+  if (!sendWaiting()) settle(amend(history.peek()!, scene));
 }
 
 /** A scene that no edit of this page led to. */
 function takeOver(scene: Scene): void {
-  const before = history.peek();
-  if (!before) {
-    history.value = begin(scene);
-  } else if (
-    JSON.stringify({ ...scene, camera: 0 }) !== JSON.stringify({ ...before.present, camera: 0 })
-  ) {
-    history.value = record(before, scene, null, 0);
-  }
+  const before = history.peek()!;
+  // Every page has its own camera and size.
+  const text = (scene: Scene) =>
+    JSON.stringify({ ...scene, camera: null, render: { ...scene.render, size: null } });
+  if (text(scene) !== text(before.present)) settle(record(before, scene, null, 0));
 }
 
 /** Farther away where the window is narrower than the scene's picture, so that it holds as much. */
@@ -127,29 +144,24 @@ function framed(camera: Camera, of: [number, number] = [1, 1]): Camera {
 }
 
 onMessage("scene", (message) => {
-  const first = !history.peek();
-  const otherData = message.data.file !== data.peek()?.file;
+  const newData = message.new_data || message.data.file !== data.peek()?.file;
+  const own = isAnswer(message) && message.client === hello.value?.client;
   data.value = message.data;
-  if (message.new_data || otherData) {
-    inFlight = null;
-    waiting = false;
-    history.value = begin(message.scene);
-  } else if (message.client === hello.value?.client && message.sequence === inFlight) {
-    if (!next()) adopt(message.scene);
-  } else if (settled()) {
-    takeOver(message.scene);
-  }
-  if (message.scene.camera && (first || message.new_data || otherData || takesCamera)) {
+  if (own) takeAnswer(message.scene);
+  else if (newData || !history.peek()) settle(begin(message.scene));
+  else if (settled()) takeOver(message.scene);
+  const { camera: its, render } = message.scene;
+  if (its && (newData || (own && takesCamera))) {
     takesCamera = false;
-    moveCamera(framed(message.scene.camera, message.scene.render?.size));
+    moveCamera(framed(its, render?.size));
   }
 });
 
-onMessage("error", ({ sequence, message }) => {
-  notify("error", message);
-  if (sequence === null || sequence !== inFlight) return;
+onMessage("error", (message) => {
+  notify("error", message.message);
+  if (!isAnswer(message)) return;
   takesCamera = false;
-  if (!next() && history.peek()) history.value = withdraw(history.peek()!);
+  if (!sendWaiting() && agreed) settle(agreed);
 });
 
 // What was under way when the connection broke will not be answered.
