@@ -1,0 +1,20 @@
+// Tests of the page in Chromium against the real program: npm run test:browser
+//   MOTES_PROGRAM   the program; default: ../build/release/motes
+//   MOTES_CHROMIUM  the browser; default: Debian's
+import { defineConfig } from "@playwright/test";
+
+export default defineConfig({
+  testDir: "tests",
+  // The renderer takes all cores.
+  workers: 1,
+  timeout: 90_000,
+  expect: { timeout: 20_000 },
+  reporter: "list",
+  use: {
+    viewport: { width: 640, height: 480 },
+    launchOptions: {
+      executablePath: process.env.MOTES_CHROMIUM ?? "/usr/bin/chromium",
+      args: ["--no-sandbox"],
+    },
+  },
+});

@@ -1,0 +1,91 @@
+// Looking: the picture comes, turns, zooms; particles are picked; trajectories play.
+import { expect } from "@playwright/test";
+import { demo, test, zeolite } from "./viewer";
+
+function distance(a: number[], b: number[]): number {
+  return Math.hypot(...a.map((c, i) => c - b[i]!));
+}
+
+test("shows the data and how to begin", async ({ screen, view }) => {
+  await screen.open(await view([zeolite]));
+  await expect(screen.page).toHaveTitle(/zeolite_mfi_3494\.xyz/);
+  await expect(screen.page.getByText("Drag to turn")).toBeVisible();
+  await expect(screen.canvas).toHaveAccessibleName(/3494 particles/);
+  // Not one colour: something is drawn.
+  const colors = await screen.canvas.evaluate((canvas: HTMLCanvasElement) => {
+    const { data } = canvas.getContext("2d")!.getImageData(0, 0, canvas.width, canvas.height);
+    return new Set(new Uint32Array(data.buffer)).size;
+  });
+  expect(colors).toBeGreaterThan(100);
+});
+
+test("turns, zooms, shifts and rolls", async ({ screen, view }) => {
+  await screen.open(await view([zeolite]));
+  const cameraNow = async () => (await screen.savedScene()).scene.camera;
+  const start = await cameraNow();
+  const first = screen.lastPicture;
+
+  await screen.change(() => screen.drag([200, 200], [300, 230]));
+  await expect(screen.page.getByText("Drag to turn")).toBeHidden();
+  const turned = await cameraNow();
+  expect(turned.target).toEqual(start.target);
+  expect(turned.up).toEqual(start.up);
+  expect(distance(turned.eye, turned.target)).toBeCloseTo(distance(start.eye, start.target), 4);
+  expect(distance(turned.eye, start.eye)).toBeGreaterThan(1);
+  expect(screen.lastPicture.equals(first)).toBe(false);
+
+  await screen.change(async () => {
+    await screen.page.mouse.move(200, 200);
+    await screen.page.mouse.wheel(0, -300);
+  });
+  const closer = await cameraNow();
+  const ratio = distance(closer.eye, closer.target) / distance(turned.eye, turned.target);
+  expect(ratio).toBeLessThan(0.8);
+
+  await screen.page.keyboard.down("Shift");
+  await screen.change(() => screen.drag([200, 200], [260, 200]));
+  await screen.page.keyboard.up("Shift");
+  expect(distance((await cameraNow()).target, closer.target)).toBeGreaterThan(0.1);
+
+  await screen.canvas.focus();
+  await screen.change(() => screen.page.keyboard.press("["));
+  expect((await cameraNow()).up).not.toEqual(start.up);
+  await screen.change(() => screen.page.keyboard.press("f"));
+});
+
+test("picks a particle and makes it the centre", async ({ screen, view }) => {
+  await screen.open(await view([zeolite, "--style", "spheres"]));
+  const box = (await screen.canvas.boundingBox())!;
+  const start = (await screen.savedScene()).scene.camera;
+  await screen.change(() =>
+    screen.page.mouse.dblclick(box.x + box.width / 2 + 30, box.y + box.height / 2 + 20),
+  );
+  const card = screen.page.getByRole("region", { name: "Picked particle" });
+  await expect(card.getByRole("heading", { level: 2 })).toHaveText(/^(Si|O|C|H) id \d+$/);
+  const centred = (await screen.savedScene()).scene.camera;
+  expect(distance(centred.target, start.target)).toBeGreaterThan(0.1);
+  const shown = await card.locator("dd").first().textContent();
+  expect(distance(shown!.split(", ").map(Number), centred.target)).toBeLessThan(0.05);
+});
+
+test("plays a trajectory", async ({ screen, view }) => {
+  await screen.open(await view([`${demo}/silica.json`]));
+  const slider = screen.page.getByRole("slider", { name: "Time step" });
+  await expect(slider).toHaveAttribute("max", "9");
+  await screen.change(() => slider.fill("0"));
+  await screen.page.getByRole("button", { name: "Play" }).click();
+  await expect.poll(async () => Number(await slider.inputValue())).toBeGreaterThan(2);
+  await screen.page.getByRole("button", { name: "Pause" }).click();
+  await screen.atRest();
+  const frame = Number(await slider.inputValue());
+  expect((await screen.savedScene()).scene.data.frame).toBe(frame);
+});
+
+test("shows statistics on demand", async ({ screen, view }) => {
+  await screen.open(await view([zeolite]));
+  await screen.canvas.focus();
+  await screen.page.keyboard.press("s");
+  const card = screen.page.getByRole("region", { name: "Statistics" });
+  await expect(card).toContainText("sweep");
+  await expect(card).toContainText(/3.494/);
+});
