@@ -24,6 +24,7 @@ test("edits a transfer function", async ({ screen, view }) => {
   expect(second.equals(first)).toBe(false);
 
   // By keyboard.
+  await page.locator(".editor-point.selected").first().focus();
   await screen.change(() => page.keyboard.press("ArrowDown"));
   expect(await points()).not.toEqual(added);
   await page.locator(".editor-point.selected").first().focus();

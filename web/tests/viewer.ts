@@ -89,16 +89,14 @@ export class Screen {
       const now = await this.shown();
       const same = now === before;
       before = now;
-      return same && now.startsWith("true");
+      return same && now.startsWith("false");
     };
     await expect.poll(isSettled, { intervals: [400], timeout: 60_000 }).toBe(true);
   }
 
-  /** Whether the picture is final, and the numbers of the view and the scene that it shows. */
+  /** Whether a fuller or newer picture is to come, and the number of the one that is shown. */
   private shown(): Promise<string> {
-    return this.canvas.evaluate(
-      ({ dataset }) => `${dataset.final} ${dataset.view} ${dataset.scene}`,
-    );
+    return this.canvas.evaluate(({ ariaBusy, dataset }) => `${ariaBusy} ${dataset.frame}`);
   }
 
   /** Does something that changes the picture and waits for the new one. */

@@ -1,9 +1,9 @@
 // The picture: as many pixels as the screen has there, always the newest that has come.
 import { useEffect, useLayoutEffect, useRef } from "preact/hooks";
 import { listen } from "../camera/pointer_input";
-import { data } from "../state/document";
+import { data, sentSequence } from "../state/document";
 import { type Picture, picture } from "../state/picture";
-import { size } from "../state/view";
+import { sentView, size } from "../state/view";
 
 // While the window is being dragged to another size the old picture is shown, scaled.
 const sizePauseMs = 120;
@@ -44,6 +44,13 @@ function watchSize(canvas: HTMLCanvasElement): () => void {
   return () => observer.disconnect();
 }
 
+/** Whether it is the full picture of all that was asked for. */
+function isComplete(shown: Picture | null): boolean {
+  const asked = [sentView.value, sentSequence.value] as const;
+  if (!shown?.frame.final) return false;
+  return shown.frame.viewSequence >= asked[0] && shown.frame.sceneSequence >= asked[1];
+}
+
 export function PictureView() {
   const canvas = useRef<HTMLCanvasElement>(null);
   const shown = picture.value;
@@ -62,9 +69,8 @@ export function PictureView() {
       aria-roledescription="three-dimensional view"
       aria-label={`Picture of ${what}`}
       aria-description="Arrow keys turn, with Shift they shift, plus and minus zoom, F shows everything."
-      data-final={shown?.frame.final ? "true" : "false"}
-      data-scene={shown?.frame.sceneSequence ?? 0}
-      data-view={shown?.frame.viewSequence ?? 0}
+      aria-busy={!isComplete(shown)}
+      data-frame={shown?.frame.id}
     />
   );
 }

@@ -8,6 +8,8 @@ import { following, hello } from "./session";
 export const camera = signal<Camera | null>(null);
 /** Of the picture, in pixels of the device. */
 export const size = signal({ width: 0, height: 0 });
+/** Sequence of the newest view that was sent. */
+export const sentView = signal(0);
 /** Whether the camera moves, so that what costs time can wait. */
 export const moving = signal(false);
 
@@ -25,7 +27,8 @@ function sendView(): void {
   const present = camera.peek();
   if (!present) return;
   const sequence = nextSequence();
-  send({ type: "view", sequence, camera: present, moving: moving.peek() });
+  const sent = send({ type: "view", sequence, camera: present, moving: moving.peek() });
+  if (sent) sentView.value = sequence;
 }
 
 function schedule(): void {
