@@ -53,6 +53,65 @@ test("turns, zooms, shifts and rolls", async ({ screen, view }) => {
   await screen.change(() => screen.page.keyboard.press("f"));
 });
 
+test("zooms and turns by two fingers", async ({ screen, view }) => {
+  await screen.open(await view([zeolite]));
+  const cameraNow = async () => (await screen.savedScene()).scene.camera;
+  const start = await cameraNow();
+  const client = await screen.page.context().newCDPSession(screen.page);
+  const touch = (type: "touchStart" | "touchMove" | "touchEnd", places: [number, number][]) =>
+    client.send("Input.dispatchTouchEvent", {
+      type,
+      touchPoints: places.map(([x, y], id) => ({ x, y, id })),
+    });
+  // About their middle, a quarter of a turn, clockwise, and twice as far apart.
+  await screen.change(async () => {
+    await touch("touchStart", [[280, 240]]);
+    await touch("touchStart", [
+      [280, 240],
+      [360, 240],
+    ]);
+    for (let i = 1; i <= 10; ++i) {
+      const x = 40 * (1 + i / 10) * Math.cos((i / 10) * (Math.PI / 2));
+      const y = 40 * (1 + i / 10) * Math.sin((i / 10) * (Math.PI / 2));
+      await touch("touchMove", [
+        [320 - x, 240 - y],
+        [320 + x, 240 + y],
+      ]);
+    }
+    await touch("touchEnd", []);
+  });
+  const end = await cameraNow();
+  const ratio = distance(end.eye, end.target) / distance(start.eye, start.target);
+  expect(ratio).toBeCloseTo(0.5, 2);
+  const forward = start.target.map(
+    (c, i) => (c - start.eye[i]!) / distance(start.eye, start.target),
+  );
+  // What was up is at the right now.
+  const along = (a: number[], b: number[]) => a.reduce((sum, c, i) => sum + c * b[i]!, 0);
+  expect(along(end.up, forward)).toBeCloseTo(along(start.up, forward), 2);
+  const across = (a: number[]) => a.map((c, i) => c - along(a, forward) * forward[i]!);
+  expect(along(across(end.up), across(start.up))).toBeCloseTo(0, 1);
+});
+
+test("works by keyboard alone", async ({ screen, view }) => {
+  const { page } = screen;
+  await screen.open(await view([zeolite]));
+  const press = async (...keys: string[]) => {
+    for (const key of keys) await page.keyboard.press(key);
+  };
+  // From the picture through the tools to the second item of the menu "View".
+  await screen.canvas.focus();
+  for (let i = 0; i < 20; ++i) {
+    await press("Tab");
+    if (await page.getByRole("button", { name: "View" }).evaluate((b) => b.matches(":focus")))
+      break;
+  }
+  await screen.change(() => press("Enter", "ArrowDown", "Enter"));
+  const { camera } = (await screen.savedScene()).scene;
+  expect(camera.fov).toBeUndefined();
+  expect(camera.orthographic).toBeGreaterThan(0);
+});
+
 test("picks a particle and makes it the centre", async ({ screen, view }) => {
   await screen.open(await view([zeolite, "--style", "spheres"]));
   const box = (await screen.canvas.boundingBox())!;

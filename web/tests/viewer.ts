@@ -43,7 +43,7 @@ export class Viewer {
 
 export interface SavedScene {
   data: { path: string; frame: number };
-  camera: { eye: number[]; target: number[]; up: number[]; fov?: number };
+  camera: { eye: number[]; target: number[]; up: number[]; fov?: number; orthographic?: number };
   fields: {
     name: string;
     visible?: boolean;

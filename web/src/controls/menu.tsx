@@ -1,6 +1,6 @@
 // A button that opens a short list of commands.
 import type { ComponentChildren } from "preact";
-import { useEffect, useRef, useState } from "preact/hooks";
+import { useLayoutEffect, useRef, useState } from "preact/hooks";
 import { Icon, type IconName } from "./icon";
 
 interface MenuProps {
@@ -36,7 +36,7 @@ export function Menu({ icon, label, face, class: extra, children }: MenuProps) {
   const root = useRef<HTMLDivElement>(null);
   const list = useRef<HTMLDivElement>(null);
 
-  useEffect(() => {
+  useLayoutEffect(() => {
     if (!open) return undefined;
     items(list.current)[0]?.focus({ preventScroll: true });
     const outside = (event: Event) => {
