@@ -8,8 +8,11 @@ import { listenForKeys } from "./state/shortcuts";
 import { size } from "./state/view";
 import "./styles/base.css";
 import "./styles/controls.css";
+import "./styles/dialogs.css";
+import "./styles/inputs.css";
 import "./styles/overlay.css";
 import "./styles/panel.css";
+import "./styles/status.css";
 
 render(<Page />, document.getElementById("page")!);
 listenForKeys();

@@ -21,7 +21,7 @@ import { toggleProjection } from "../state/shortcuts";
 import { camera, fit } from "../state/view";
 
 const themes: { value: Theme; label: string }[] = [
-  { value: "system", label: "Appearance as the system’s" },
+  { value: "system", label: "Automatic appearance" },
   { value: "light", label: "Light" },
   { value: "dark", label: "Dark" },
 ];

@@ -1,6 +1,6 @@
 // This page's camera: every change goes to the server, at most one in each frame of the display.
 import { computed, effect, signal } from "@preact/signals";
-import { between } from "../camera/camera";
+import { between, centre, zoom } from "../camera/camera";
 import { connectionState, nextSequence, onMessage, send } from "../protocol/connection";
 import type { Camera } from "../protocol/scene";
 import { following, hello } from "./session";
@@ -82,6 +82,18 @@ export function fit(): void {
 effect(() => {
   const { width, height } = size.value;
   if (width > 0 && connectionState.value.kind === "open") send({ type: "size", width, height });
+});
+
+// Across the shorter side one sees as much as before, when a panel opens or a phone is turned.
+let before = { width: 0, height: 0 };
+effect(() => {
+  const longer = ({ width, height }: typeof before) => height / Math.min(width, height);
+  const now = size.value;
+  const factor = longer(now) / longer(before);
+  before = now;
+  const present = camera.peek();
+  if (present && following.peek() === null && factor !== 1)
+    moveCamera(zoom(present, factor, centre));
 });
 
 // A new connection knows nothing of this page's view.
