@@ -4,6 +4,7 @@ import { DropZone } from "./dialogs/drop_zone";
 import { FilesDialog } from "./dialogs/files_dialog";
 import { HelpDialog } from "./dialogs/help_dialog";
 import { PictureDialog } from "./dialogs/picture_dialog";
+import { TextDialog } from "./dialogs/text_dialog";
 import { Axes } from "./overlay/axes";
 import { ColorBars } from "./overlay/color_bars";
 import { PickedCard, PickedMarker } from "./overlay/picked_particle";
@@ -29,6 +30,7 @@ const dialogs = {
   files: FilesDialog,
   picture: PictureDialog,
   command: CommandDialog,
+  text: TextDialog,
   help: HelpDialog,
 };
 

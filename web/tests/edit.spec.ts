@@ -139,3 +139,23 @@ test("shares a scene between viewers, each with its own camera", async ({
   expect((await other.savedScene()).scene.camera).toEqual(mine.scene.camera);
   expect(other.faults).toEqual([]);
 });
+
+test("edits the scene as text", async ({ screen, view }) => {
+  const { page } = screen;
+  await screen.open(await view([zeolite]));
+  const open = async () => {
+    await page.getByRole("button", { name: "Save and share" }).click();
+    await page.getByRole("menuitem", { name: "Edit scene as text" }).click();
+  };
+  await open();
+  const text = page.getByRole("textbox", { name: "Scene" });
+  const scene = JSON.parse(await text.inputValue()) as { kernel: { support_factor: number } };
+  await text.fill("{");
+  await page.getByRole("button", { name: "Apply" }).click();
+  await expect(page.getByRole("alert")).toBeVisible();
+  scene.kernel.support_factor = 3;
+  await text.fill(JSON.stringify(scene));
+  await screen.change(() => page.getByRole("button", { name: "Apply" }).click());
+  await open();
+  expect(JSON.parse(await text.inputValue())).toMatchObject({ kernel: { support_factor: 3 } });
+});

@@ -6,7 +6,7 @@ import { type Page, expect } from "@playwright/test";
 import { demo, program, renderScene, test, zeolite } from "./viewer";
 
 async function choose(page: Page, item: string): Promise<void> {
-  await page.getByRole("button", { name: "Save", exact: true }).click();
+  await page.getByRole("button", { name: "Save and share" }).click();
   await page.getByRole("menuitem", { name: item }).click();
 }
 

@@ -115,7 +115,7 @@ export class Screen {
   }
 
   async savedScene(): Promise<{ path: string; scene: SavedScene }> {
-    await this.page.getByRole("button", { name: "Save", exact: true }).click();
+    await this.page.getByRole("button", { name: "Save and share" }).click();
     const download = this.page.waitForEvent("download");
     await this.page.getByRole("menuitem", { name: "Save scene" }).click();
     const path = await (await download).path();

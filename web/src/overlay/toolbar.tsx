@@ -72,7 +72,7 @@ function ViewMenu() {
 
 function SaveMenu() {
   return (
-    <Menu icon="save" label="Save">
+    <Menu icon="save" label="Save and share">
       <MenuItem icon="camera" label="Save picture…" onClick={() => (dialog.value = "picture")} />
       <MenuItem icon="file" label="Save scene" shortcut="Ctrl + S" onClick={saveScene} />
       <MenuItem
@@ -80,6 +80,7 @@ function SaveMenu() {
         label="Copy command line…"
         onClick={() => (dialog.value = "command")}
       />
+      <MenuItem icon="edit" label="Edit scene as text…" onClick={() => (dialog.value = "text")} />
     </Menu>
   );
 }
