@@ -19,7 +19,7 @@ export function HelpDialog() {
       <table>
         <thead>
           <tr>
-            <th />
+            <td />
             <th>Mouse</th>
             <th>Touch</th>
           </tr>

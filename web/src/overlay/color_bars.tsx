@@ -24,8 +24,8 @@ function ColorBar({ name, transfer }: { name: string; transfer: TransferFunction
   const marks = axis.scale === "log" ? logTicks(axis.min, axis.max) : ticks(axis.min, axis.max, 5);
   const range = `${formatNumber(axis.min)} to ${formatNumber(axis.max)}`;
   return (
-    <figure class="color-bar" role="img" aria-label={`Colours of ${name}, ${range}`}>
-      <figcaption>{name}</figcaption>
+    <div class="color-bar" role="img" aria-label={`Colours of ${name}, ${range}`}>
+      <div class="color-bar-name">{name}</div>
       <div class="color-bar-body">
         <div class="color-bar-colors" style={{ background: gradientOf(transfer, "to top") }} />
         <div class="color-bar-ticks">
@@ -36,7 +36,7 @@ function ColorBar({ name, transfer }: { name: string; transfer: TransferFunction
           ))}
         </div>
       </div>
-    </figure>
+    </div>
   );
 }
 

@@ -120,6 +120,7 @@ export function Toolbar() {
   const file = data.value?.file.split("/").at(-1) ?? "Open a file";
   return (
     <header class="toolbar">
+      <h1 class="unseen">Motes</h1>
       <div class="bar file-bar">
         <button
           type="button"
