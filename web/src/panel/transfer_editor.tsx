@@ -22,18 +22,28 @@ const height = 132;
 const inset = { left: 9, right: 9, top: 10, bottom: 18 };
 const stops = 32;
 const keyStep = 0.01;
+// Of the points' range, beside it where the editor is close to them.
+const margin = 0.1;
 
 interface EditorProps {
   transfer: TransferFunction;
   histogram: Histogram | undefined;
+  close: boolean;
   selected: number;
   onSelect: (index: number) => void;
   onChange: (transfer: TransferFunction, what: string | null) => void;
 }
 
-/** What the editor shows from left to right: all values in view and all points. */
-export function axisFor(transfer: TransferFunction, histogram: Histogram | undefined): Axis {
+/** What the editor shows from left to right: all values in view and all points, or close to the points. */
+export function axisFor(
+  transfer: TransferFunction,
+  histogram: Histogram | undefined,
+  close = false,
+): Axis {
   const own = extentOf(transfer);
+  if (close && own.min < own.max) {
+    return { ...own, min: valueAt(-margin, own), max: valueAt(1 + margin, own) };
+  }
   const log = own.scale === "log";
   const low = log ? histogram?.positive_min : histogram?.min;
   const min = Math.min(own.min, low ?? own.min);
@@ -222,13 +232,13 @@ function onKey(event: KeyboardEvent, index: number, props: EditorProps, layout: 
 }
 
 export function TransferEditor(props: EditorProps) {
-  const { transfer, histogram, selected, onSelect } = props;
+  const { transfer, histogram, close, selected, onSelect } = props;
   const svg = useRef<SVGSVGElement>(null);
   const [id] = useState(() => `transfer${++lastId}`);
   const [frozen, setFrozen] = useState<Layout | null>(null);
   const width = useWidth(svg);
   const layout = frozen ?? {
-    axis: axisFor(transfer, histogram),
+    axis: axisFor(transfer, histogram, close),
     top: greatestExtinction(transfer) * 1.1 || 1,
     width,
   };

@@ -167,6 +167,7 @@ function WholeRows({ transfer, onChange, leastPositive }: EditProps & { leastPos
 
 export function TransferSection({ field, index }: { field: Field; index: number }) {
   const [selected, setSelected] = useState(0);
+  const [close, setClose] = useState(false);
   const transfer = field.transfer_function;
   const fitAnew = (name: string) => edit(setField(index, { transfer_function: { name } }));
   if (!hasPoints(transfer)) {
@@ -189,10 +190,21 @@ export function TransferSection({ field, index }: { field: Field; index: number 
   );
   return (
     <div class="transfer">
-      <TransferEditor {...edits} histogram={histogram} selected={chosen} onSelect={setSelected} />
+      <TransferEditor
+        {...edits}
+        {...{ histogram, close }}
+        selected={chosen}
+        onSelect={setSelected}
+      />
       <PointRow {...edits} selected={chosen} onSelect={setSelected} />
       <div class="row">
         <MapMenu {...edits} onFit={fitAnew} />
+        <IconButton
+          icon="zoom"
+          label="Close to the points"
+          pressed={close}
+          onClick={() => setClose(!close)}
+        />
       </div>
       <WholeRows {...edits} leastPositive={leastPositive} />
     </div>
