@@ -4,7 +4,8 @@ import { dot, normalized, scaled } from "../camera/vector";
 import { Button, IconButton } from "../controls/button";
 import { Segments, Slider } from "../controls/fields";
 import type { ClipPlane, Vector } from "../protocol/scene";
-import { replaced, setClipPlanes } from "../scene/edit";
+import { setClipPlanes } from "../scene/edit";
+import { replaced } from "../scene/lists";
 import { data, edit } from "../state/document";
 import { camera } from "../state/view";
 

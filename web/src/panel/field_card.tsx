@@ -7,6 +7,7 @@ import type { Field } from "../protocol/scene";
 import { gradientOf } from "../overlay/color_bars";
 import { hasPoints, isVisible, newFieldName, setField, setFields } from "../scene/edit";
 import { formatCount } from "../scene/format";
+import { withItem, withoutItem } from "../scene/lists";
 import { data, edit } from "../state/document";
 import { IsosurfaceList } from "./isosurface_list";
 import { SelectionEditor } from "./selection_editor";
@@ -123,7 +124,7 @@ function FieldFoot({ field, index }: FieldProps) {
   const duplicate = () =>
     edit(
       setFields((old) =>
-        old.toSpliced(index + 1, 0, { ...field, name: newFieldName(old, field.name ?? "field") }),
+        withItem(old, index + 1, { ...field, name: newFieldName(old, field.name ?? "field") }),
       ),
     );
   return (
@@ -137,7 +138,7 @@ function FieldFoot({ field, index }: FieldProps) {
       <IconButton
         icon="trash"
         label="Remove this field"
-        onClick={() => edit(setFields((old) => old.toSpliced(index, 1)))}
+        onClick={() => edit(setFields((old) => withoutItem(old, index)))}
       />
     </div>
   );

@@ -2,7 +2,8 @@
 import { IconButton } from "../controls/button";
 import { ColorField, Select, SelectRow, Slider } from "../controls/fields";
 import type { Color, ColorByProperty, Geometry } from "../protocol/scene";
-import { replaced, setGeometry } from "../scene/edit";
+import { setGeometry } from "../scene/edit";
+import { replaced } from "../scene/lists";
 import { data, edit } from "../state/document";
 import { colorMaps } from "../state/session";
 import { SelectionEditor } from "./selection_editor";

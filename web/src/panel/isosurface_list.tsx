@@ -2,7 +2,8 @@
 import { IconButton } from "../controls/button";
 import { ColorField, Select, Slider } from "../controls/fields";
 import type { Color, Field, Isosurface } from "../protocol/scene";
-import { hasPoints, replaced, setField } from "../scene/edit";
+import { hasPoints, setField } from "../scene/edit";
+import { replaced } from "../scene/lists";
 import { sample } from "../scene/transfer_function";
 import { data, edit } from "../state/document";
 import { histograms } from "../state/measurements";

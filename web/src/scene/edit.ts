@@ -11,6 +11,7 @@ import type {
   SurfaceSettings,
   TransferFunction,
 } from "../protocol/scene";
+import { replaced } from "./lists";
 
 type Change = (scene: Scene) => Scene;
 
@@ -51,17 +52,7 @@ export const setFields =
 
 /** `undefined` takes a key out, so that the server fits its value. */
 export const setField = (index: number, patch: Partial<Field>): Change =>
-  setFields((fields) => fields.map((field, i) => (i === index ? { ...field, ...patch } : field)));
-
-/** The item at an index changed, or taken out by null. */
-export function replaced<T extends object>(
-  items: T[],
-  index: number,
-  patch: Partial<T> | null,
-): T[] {
-  if (patch === null) return items.toSpliced(index, 1);
-  return items.map((item, i) => (i === index ? { ...item, ...patch } : item));
-}
+  setFields((fields) => replaced(fields, index, patch));
 
 /** A name that no field has. */
 export function newFieldName(fields: Field[], stem: string): string {
@@ -98,7 +89,8 @@ export function withStyle(scene: Scene, style: string, earlier: Scene[]): Scene 
   const { geometry: _, fields, ...rest } = scene;
   const volume = (candidate: Scene) =>
     candidate.fields?.filter((field) => field.transfer_function !== undefined) ?? [];
-  const source = volume(scene).length > 0 ? scene : earlier.findLast((s) => volume(s).length > 0);
+  const source =
+    volume(scene).length > 0 ? scene : [...earlier].reverse().find((s) => volume(s).length > 0);
   const kept = source && volume(source).map(({ isosurfaces: _, ...field }) => field);
   const drawsVolume = style === "volume" || style === "volume+balls";
   if (drawsVolume) return { ...rest, ...(kept && { fields: kept }), style };

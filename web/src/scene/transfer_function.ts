@@ -1,6 +1,7 @@
 // Editing of transfer functions: from a field's value to colour and extinction, linear between points.
 import type { Color, Scale, TransferFunction, TransferPoint } from "../protocol/scene";
 import { hexOf, mixedColor } from "./color";
+import { replaced, withItem, withoutItem } from "./lists";
 
 /** Values of the horizontal axis; the middle of it on a logarithmic scale is the geometric mean. */
 export interface Axis {
@@ -73,17 +74,11 @@ export function movePoint(
   // Where neighbours leave no room the point stays where it is.
   const value = low > high ? points[index]!.value : Math.min(high, Math.max(low, to.value));
   const extinction = Math.max(0, to.extinction);
-  return withPoints(
-    transfer,
-    points.map((point, i) => (i === index ? { ...point, value, extinction } : point)),
-  );
+  return withPoints(transfer, replaced(points, index, { value, extinction }));
 }
 
 export function recolorPoint(transfer: TransferFunction, index: number, color: Color) {
-  return withPoints(
-    transfer,
-    transfer.points.map((point, i) => (i === index ? { ...point, color } : point)),
-  );
+  return withPoints(transfer, replaced(transfer.points, index, { color }));
 }
 
 /** A new point on the curve, or at another extinction; null where there is one already. */
@@ -104,7 +99,7 @@ export function addPoint(
   };
   const after = transfer.points.findIndex((other) => other.value > value);
   const index = after < 0 ? transfer.points.length : after;
-  return { transfer: withPoints(transfer, transfer.points.toSpliced(index, 0, point)), index };
+  return { transfer: withPoints(transfer, withItem(transfer.points, index, point)), index };
 }
 
 /** The value in the middle of the widest gap, for a new point that no pointer places. */
@@ -121,7 +116,7 @@ export function widestGap(transfer: TransferFunction, axis: Axis): number {
 /** The last point stays. */
 export function removePoint(transfer: TransferFunction, index: number): TransferFunction {
   if (transfer.points.length === 1) return transfer;
-  return withPoints(transfer, transfer.points.toSpliced(index, 1));
+  return withPoints(transfer, withoutItem(transfer.points, index));
 }
 
 export function withGreatestExtinction(transfer: TransferFunction, greatest: number) {
