@@ -1,7 +1,7 @@
 // The picture: as many pixels as the screen has there, always the newest that has come.
 import { useEffect, useLayoutEffect, useRef } from "preact/hooks";
 import { listen } from "../camera/pointer_input";
-import { data, sentSequence } from "../state/document";
+import { data, settled, takenSequence } from "../state/document";
 import { type Picture, picture } from "../state/picture";
 import { sentView, size } from "../state/view";
 
@@ -46,9 +46,10 @@ function watchSize(canvas: HTMLCanvasElement): () => void {
 
 /** Whether it is the full picture of all that was asked for. */
 function isComplete(shown: Picture | null): boolean {
-  const asked = [sentView.value, sentSequence.value] as const;
-  if (!shown?.frame.final) return false;
-  return shown.frame.viewSequence >= asked[0] && shown.frame.sceneSequence >= asked[1];
+  const view = sentView.value;
+  const scene = takenSequence.value;
+  if (!settled.value || !shown?.frame.final) return false;
+  return shown.frame.viewSequence >= view && shown.frame.sceneSequence >= scene;
 }
 
 export function PictureView() {

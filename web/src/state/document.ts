@@ -18,11 +18,13 @@ export const canUndo = computed(() => (history.value?.past.length ?? 0) > 0);
 export const canRedo = computed(() => (history.value?.future.length ?? 0) > 0);
 /** Earlier scenes of these data, oldest first. */
 export const pastScenes = computed(() => history.value?.past ?? []);
-/** Sequence of the newest scene that was sent. */
-export const sentSequence = signal(0);
+/** Sequence of the newest scene of this page that the server has taken. */
+export const takenSequence = signal(0);
 
 /** The edit that the server is at, and the history that ended with it. */
-let inFlight: { sequence: number; history: History<Scene> } | null = null;
+const inFlight = signal<{ sequence: number; history: History<Scene> } | null>(null);
+/** Whether the server has answered all edits. */
+export const settled = computed(() => inFlight.value === null);
 /** Whether there are newer edits. */
 let waiting = false;
 /** As far as the server has agreed: where a refused edit leads back to. */
@@ -42,20 +44,14 @@ export function presentScene(): Scene | null {
   };
 }
 
-/** Whether the server has answered all edits. */
-export function settled(): boolean {
-  return inFlight === null && !waiting;
-}
-
 function transmit(): void {
   const present = presentScene();
-  if (inFlight !== null) {
+  if (inFlight.peek()) {
     waiting = true;
   } else if (present) {
     const sequence = nextSequence();
     if (!send({ type: "scene", sequence, scene: present })) return;
-    inFlight = { sequence, history: history.peek()! };
-    sentSequence.value = sequence;
+    inFlight.value = { sequence, history: history.peek()! };
   }
 }
 
@@ -102,16 +98,16 @@ export const undoEdit = (): void => travel(undo);
 export const redoEdit = (): void => travel(redo);
 
 /** Agrees with the server about all that is shown. */
-function settle(settled: History<Scene>): void {
-  inFlight = null;
+function settle(present: History<Scene>): void {
+  inFlight.value = null;
   waiting = false;
-  agreed = settled;
-  history.value = settled;
+  agreed = present;
+  history.value = present;
 }
 
 /** Sends the newest edit, if one waited for the answer that has come. */
 function sendWaiting(): boolean {
-  inFlight = null;
+  inFlight.value = null;
   if (!waiting) return false;
   waiting = false;
   transmit();
@@ -119,12 +115,13 @@ function sendWaiting(): boolean {
 }
 
 function isAnswer(message: { sequence: number | null }): boolean {
-  return message.sequence !== null && message.sequence === inFlight?.sequence;
+  return message.sequence !== null && message.sequence === inFlight.peek()?.sequence;
 }
 
 /** What an edit of this page came to. */
 function takeAnswer(scene: Scene): void {
-  agreed = amend(inFlight!.history, scene);
+  takenSequence.value = inFlight.peek()!.sequence;
+  agreed = amend(inFlight.peek()!.history, scene);
   if (!sendWaiting()) settle(amend(history.peek()!, scene));
 }
 
@@ -149,7 +146,7 @@ onMessage("scene", (message) => {
   data.value = message.data;
   if (own) takeAnswer(message.scene);
   else if (newData || !history.peek()) settle(begin(message.scene));
-  else if (settled()) takeOver(message.scene);
+  else if (settled.peek()) takeOver(message.scene);
   const { camera: its, render } = message.scene;
   if (its && (newData || (own && takesCamera))) {
     takesCamera = false;
@@ -167,7 +164,7 @@ onMessage("error", (message) => {
 // What was under way when the connection broke will not be answered.
 effect(() => {
   if (connectionState.value.kind === "open") return;
-  inFlight = null;
+  inFlight.value = null;
   waiting = false;
-  sentSequence.value = 0;
+  takenSequence.value = 0;
 });

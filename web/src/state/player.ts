@@ -1,6 +1,6 @@
 // Plays a trajectory: the next step is asked for when the last is on the screen and its time is over.
 import { computed, effect, signal } from "@preact/signals";
-import { data, scene, sentSequence, settled, showFrame } from "./document";
+import { data, scene, settled, takenSequence, showFrame } from "./document";
 import { picture } from "./picture";
 
 export const playing = signal(false);
@@ -15,7 +15,7 @@ export const isTrajectory = computed(() => frameCount.value === null || frameCou
 let lastStep = 0;
 
 function onScreen(): boolean {
-  return settled() && (picture.peek()?.frame.sceneSequence ?? 0) >= sentSequence.peek();
+  return settled.peek() && (picture.peek()?.frame.sceneSequence ?? 0) >= takenSequence.peek();
 }
 
 /** A step on or back, around the ends where that is wanted. */

@@ -8,8 +8,9 @@ import { following, hello } from "./session";
 export const camera = signal<Camera | null>(null);
 /** Of the picture, in pixels of the device. */
 export const size = signal({ width: 0, height: 0 });
-/** Sequence of the newest view that was sent. */
+/** Sequence of the newest view that was sent and was another than the one before. */
 export const sentView = signal(0);
+let sentText = "";
 /** Whether the camera moves, so that what costs time can wait. */
 export const moving = signal(false);
 
@@ -28,7 +29,9 @@ function sendView(): void {
   if (!present) return;
   const sequence = nextSequence();
   const sent = send({ type: "view", sequence, camera: present, moving: moving.peek() });
-  if (sent) sentView.value = sequence;
+  const text = JSON.stringify(present);
+  if (sent && text !== sentText) sentView.value = sequence;
+  sentText = text;
 }
 
 function schedule(): void {
