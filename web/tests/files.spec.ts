@@ -90,3 +90,24 @@ test("takes a file that is sent to it", async ({ screen, view }) => {
   await screen.atRest();
   await expect(screen.canvas).toHaveAccessibleName(/3494 particles/);
 });
+
+test("takes a scene that is dropped on it", async ({ screen, view }) => {
+  const { page } = screen;
+  await screen.open(await view([zeolite]));
+  const { scene } = await screen.savedScene();
+  scene.render.background = "#ffffff";
+  const drop = async (text: string) => {
+    const transfer = await page.evaluateHandle((content) => {
+      const files = new DataTransfer();
+      files.items.add(new File([content], "scene.json", { type: "application/json" }));
+      return files;
+    }, text);
+    await page.dispatchEvent("body", "dragover", { dataTransfer: transfer });
+    await expect(page.getByText("Drop to open")).toBeVisible();
+    await page.dispatchEvent("body", "drop", { dataTransfer: transfer });
+  };
+  await drop("no scene");
+  await expect(page.getByRole("status")).toContainText("expected a scene");
+  await screen.change(() => drop(JSON.stringify(scene)));
+  expect((await screen.savedScene()).scene.render.background).not.toBe("#000000");
+});

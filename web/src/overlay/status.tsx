@@ -5,6 +5,7 @@ import { Icon } from "../controls/icon";
 import { connect, connectionState } from "../protocol/connection";
 import { data } from "../state/document";
 import { cancelOpening, upload } from "../state/files";
+import { dialog } from "../state/interface";
 import { dismiss, notices } from "../state/notices";
 import { picture } from "../state/picture";
 import { hintSeen } from "../state/preferences";
@@ -112,9 +113,19 @@ export function Status() {
 /** Before the first picture. */
 export function Opening() {
   if (picture.value || connectionState.value.kind !== "open" || progress.value) return null;
+  if (data.value) {
+    return (
+      <div class="opening">
+        <span class="spinner" /> Drawing the first picture…
+      </div>
+    );
+  }
   return (
-    <div class="opening">
-      <span class="spinner" /> {data.value ? "Drawing the first picture…" : "Opening…"}
+    <div class="opening late">
+      Nothing is open yet.
+      <Button icon="folder" onClick={() => (dialog.value = "files")}>
+        Open a file
+      </Button>
     </div>
   );
 }
