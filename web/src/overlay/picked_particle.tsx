@@ -1,6 +1,5 @@
 // The particle that was picked: a ring around it, and what is known of it.
-import { project } from "../camera/camera";
-import { lookAt } from "../camera/camera";
+import { lookAt, project } from "../camera/camera";
 import { Button, IconButton } from "../controls/button";
 import { formatNumber, unitSign } from "../scene/format";
 import { data } from "../state/document";

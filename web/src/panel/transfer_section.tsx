@@ -123,6 +123,7 @@ function MapMenu({ transfer, onChange, onFit }: EditProps & { onFit: (map: strin
 function WholeRows({ transfer, onChange, leastPositive }: EditProps & { leastPositive: number }) {
   const { min, max } = extentOf(transfer);
   const greatest = greatestExtinction(transfer);
+  const least = scaleOf(transfer) === "log" ? 0 : -Infinity;
   // In the middle of the slider is what makes the data's size about opaque.
   const bounds = data.value?.bounds;
   const size = bounds ? Math.max(...bounds.max.map((high, i) => high - bounds.min[i]!)) || 1 : 1;
@@ -144,7 +145,9 @@ function WholeRows({ transfer, onChange, leastPositive }: EditProps & { leastPos
           <NumberField
             label="Lowest value"
             value={min}
-            onChange={(low) => low < max && onChange(withRange(transfer, low, max), "range")}
+            onChange={(low) =>
+              low < max && low > least && onChange(withRange(transfer, low, max), "range")
+            }
           />
           <span class="quiet">to</span>
           <NumberField

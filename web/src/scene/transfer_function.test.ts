@@ -61,6 +61,14 @@ describe("points", () => {
     expect(left[1]).toBeGreaterThan(0);
   });
 
+  it("stay positive on a logarithmic scale", () => {
+    const log = withScale(ramp, "log", 0.5);
+    const moveTo = (value: number) =>
+      values(movePoint(log, 0, { value, extinction: 0 }, extentOf(log)))[0];
+    expect(moveTo(-2)).toBe(0.5);
+    expect(moveTo(0.01)).toBe(0.01);
+  });
+
   it("have no negative extinction", () => {
     const moved = movePoint(ramp, 1, { value: 1, extinction: -3 }, axis);
     expect(moved.points[1]!.extinction).toBe(0);

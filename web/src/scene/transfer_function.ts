@@ -69,7 +69,8 @@ export function movePoint(
   const { points } = transfer;
   const limit = (neighbour: TransferPoint | undefined, side: number) =>
     neighbour && valueAt(positionOf(neighbour.value, axis) + side * leastGap, axis);
-  const low = limit(points[index - 1], 1) ?? (axis.scale === "log" ? axis.min : -Infinity);
+  const least = axis.scale === "log" && to.value <= 0 ? axis.min : -Infinity;
+  const low = limit(points[index - 1], 1) ?? least;
   const high = limit(points[index + 1], -1) ?? Infinity;
   // Where neighbours leave no room the point stays where it is.
   const value = low > high ? points[index]!.value : Math.min(high, Math.max(low, to.value));

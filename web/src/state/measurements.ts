@@ -48,9 +48,10 @@ effect(() => {
   return () => clearInterval(timer);
 });
 
-// A particle of other data is none of these.
-let file: string | undefined;
+// In other data, or at another time, the particle is elsewhere.
+let shown = "";
 effect(() => {
-  if (data.value?.file !== file) picked.value = null;
-  file = data.value?.file;
+  const now = `${scene.value?.data?.frame} ${data.value?.file}`;
+  if (now !== shown) picked.value = null;
+  shown = now;
 });
