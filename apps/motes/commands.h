@@ -12,5 +12,6 @@ void add_info_command(CLI::App& program);
 void add_probe_command(CLI::App& program);
 void add_render_command(CLI::App& program);
 void add_resample_command(CLI::App& program);
+void add_view_command(CLI::App& program);
 
 }  // namespace motes

@@ -6,7 +6,10 @@
 
 #include <csignal>
 #include <cstdio>
+#include <functional>
+#include <mutex>
 #include <thread>
+#include <utility>
 
 #include "core/temporary_files.h"
 
@@ -23,6 +26,18 @@ sigset_t interruptions() {
     if (action.sa_handler != SIG_IGN) sigaddset(&signals, signal);
   }
   return signals;
+}
+
+/// What is done instead of leaving, if anything.
+std::mutex stop_mutex;
+std::function<void()> stop_instead;
+
+/// Whether there was something to be done instead.
+bool stop() {
+  const std::lock_guard lock(stop_mutex);
+  const std::function<void()> stop = std::exchange(stop_instead, nullptr);
+  if (stop) stop();
+  return stop != nullptr;
 }
 
 [[noreturn]] void leave(int signal) {
@@ -47,10 +62,22 @@ void leave_when_interrupted() {
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);  // in this thread and those that it will start
   std::thread([signals] {
     int signal = 0;
-    while (sigwait(&signals, &signal) != 0) {
-    }
+    do {
+      while (sigwait(&signals, &signal) != 0) {
+      }
+    } while (stop());
     leave(signal);
   }).detach();
+}
+
+StopWhenInterrupted::StopWhenInterrupted(std::function<void()> stop) {
+  const std::lock_guard lock(stop_mutex);
+  stop_instead = std::move(stop);
+}
+
+StopWhenInterrupted::~StopWhenInterrupted() {
+  const std::lock_guard lock(stop_mutex);
+  stop_instead = nullptr;
 }
 
 }  // namespace motes

@@ -20,6 +20,7 @@ namespace {
 constexpr const char* examples = R"(Examples:
   motes render silica.lammpstrj -o silica.png
   motes render snapshot_042.hdf5 -o box.png --transfer-function magma
+  motes view silica.lammpstrj
   motes info silica.lammpstrj
   motes probe silica.lammpstrj --points points.csv -o values.csv
   motes resample silica.lammpstrj -o silica.vti --voxel-size 0.5
@@ -140,6 +141,7 @@ int run(int argc, char** argv) {
   motes::add_probe_command(program);
   motes::add_render_command(program);
   motes::add_resample_command(program);
+  motes::add_view_command(program);
   motes::add_bench_command(program);
   try {
     program.parse(argc, argv);  // runs the subcommand

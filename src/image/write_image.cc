@@ -20,24 +20,25 @@ ImageFormat image_format(const std::filesystem::path& path) {
   throw Error(path, "unknown image format, expected a name that ends in .png, .jpg, .exr or .npy");
 }
 
-void write_image(AtomicFile& file, ImageFormat format, const Framebuffer& framebuffer,
-                 double termination_opacity, const Color& background) {
+std::string encode_image(ImageFormat format, const Framebuffer& framebuffer,
+                         double termination_opacity, const Color& background) {
   switch (format) {
     case ImageFormat::png:
-      file.write(encode_png(to_display(framebuffer, termination_opacity, background)));
-      break;
+      return encode_png(to_display(framebuffer, termination_opacity, background));
     case ImageFormat::jpeg:
-      file.write(encode_jpeg(to_display(framebuffer, termination_opacity, background)));
-      break;
+      return encode_jpeg(to_display(framebuffer, termination_opacity, background));
     case ImageFormat::exr:
-      file.write(encode_exr(framebuffer));
-      break;
+      return encode_exr(framebuffer);
     case ImageFormat::npy:
-      file.write(npy_header(framebuffer));
-      file.write({reinterpret_cast<const char*>(framebuffer.rgba.data()),
-                  framebuffer.rgba.size() * sizeof(float)});
       break;
   }
+  return npy_header(framebuffer).append(reinterpret_cast<const char*>(framebuffer.rgba.data()),
+                                        framebuffer.rgba.size() * sizeof(float));
+}
+
+void write_image(AtomicFile& file, ImageFormat format, const Framebuffer& framebuffer,
+                 double termination_opacity, const Color& background) {
+  file.write(encode_image(format, framebuffer, termination_opacity, background));
 }
 
 void write_image(const std::filesystem::path& path, const Framebuffer& framebuffer,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "core/atomic_file.h"
 #include "core/color.h"
@@ -14,8 +15,12 @@ enum class ImageFormat { png, jpeg, exr, npy };
 /// By suffix: .png, .jpg or .jpeg, .exr, .npy, in any case. Throws Error for others.
 ImageFormat image_format(const std::filesystem::path& path);
 
-/// Writes `framebuffer` to `file`, but does not commit it. PNG and JPEG show it as to_display()
-/// does; EXR and NPY hold it as it is.
+/// The bytes of a file of that format. PNG and JPEG show `framebuffer` as to_display() does; EXR and
+/// NPY hold it as it is.
+std::string encode_image(ImageFormat format, const Framebuffer& framebuffer,
+                         double termination_opacity, const Color& background);
+
+/// Writes `framebuffer` to `file`, as encode_image() has it, but does not commit it.
 void write_image(AtomicFile& file, ImageFormat format, const Framebuffer& framebuffer,
                  double termination_opacity, const Color& background);
 

@@ -198,6 +198,10 @@ bool draws_surfaces_only(const ResolvedScene& scene) {
          std::all_of(scene.transfer_functions.begin(), scene.transfer_functions.end(), invisible);
 }
 
+bool is_cancelled(const RenderOptions& options) {
+  return options.cancel != nullptr && options.cancel->load(std::memory_order_relaxed);
+}
+
 /// Calls work(tile) for all tiles of the image, in parallel.
 template <class Work>
 void for_tiles(const ResolvedScene& scene, const RenderOptions& options, int tile_size,
@@ -215,6 +219,7 @@ void for_tiles(const ResolvedScene& scene, const RenderOptions& options, int til
   tbb::task_arena arena(threads);
   arena.execute([&] {
     tbb::parallel_for(0, columns * rows, [&](int i) {
+      if (is_cancelled(options)) return;
       const int x = i % columns * tile_size, y = i / columns * tile_size;
       work(Tile{x, y, std::min(tile_size, width - x), std::min(tile_size, height - y)});
       const std::lock_guard lock(mutex);
@@ -318,7 +323,7 @@ Framebuffer Renderer::render(const ResolvedScene& scene, const RenderOptions& op
   return image;
 }
 
-void Renderer::render(const ResolvedScene& scene, const RenderOptions& options, Framebuffer& image,
+bool Renderer::render(const ResolvedScene& scene, const RenderOptions& options, Framebuffer& image,
                       RenderStatistics* statistics) const {
   assert(scene.transfer_functions.size() == kernels_->fields.size());
   assert(scene.step_size > 0);
@@ -394,6 +399,7 @@ void Renderer::render(const ResolvedScene& scene, const RenderOptions& options, 
                    target,
                    all.evaluations_inside};
   }
+  return !is_cancelled(options);
 }
 
 }  // namespace motes

@@ -1,6 +1,7 @@
 // The renderer: fields of particles with their tree, ready to be looked at from anywhere.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -31,6 +32,8 @@ struct RenderOptions {
   /// to 32, in whole eights.
   std::optional<int> samples_per_pass = std::nullopt;
   Progress* progress = nullptr;
+  /// Once it is true, render() returns soon; null: never.
+  const std::atomic<bool>* cancel = nullptr;
   /// Surfaces in the way of rays through fields, in place of the renderer's own geometry; empty:
   /// that.
   LayerSource layers = {};
@@ -68,7 +71,8 @@ class Renderer {
   Framebuffer render(const ResolvedScene& scene, const RenderOptions& options,
                      RenderStatistics* statistics = nullptr) const;
   /// The same into `image`, whose memory is used again where its size is right: frame after frame.
-  void render(const ResolvedScene& scene, const RenderOptions& options, Framebuffer& image,
+  /// False if it was cancelled: the image is of no use then.
+  bool render(const ResolvedScene& scene, const RenderOptions& options, Framebuffer& image,
               RenderStatistics* statistics = nullptr) const;
 
   /// Takes the next frame of moving particles, with the kernels of `fields`. Refits the tree as
@@ -87,6 +91,8 @@ class Renderer {
 
   const KernelSet& kernels() const { return *kernels_; }
   const GridFields& grids() const { return grids_; }
+  /// Balls and sticks; null: there are none.
+  const Surface* surface() const { return surface_ ? &*surface_ : nullptr; }
   /// Bytes of balls and sticks besides those of kernels().
   std::size_t surface_bytes() const {
     return surface_ ? surface_->bytes() + field_values_.bytes() : 0;

@@ -39,7 +39,11 @@ ResolvedScene resolve(const Scene& scene, const ParticleSet& particles,
   ResolvedScene resolved;
   resolved.render = scene.render;
   const double aspect = static_cast<double>(scene.render.width) / scene.render.height;
-  resolved.camera = fit_camera(scene, visible_spheres(particles, sources, geometry), aspect);
+  // Nothing has to be looked at for a camera that is given.
+  const bool is_given = scene.eye && scene.target && scene.up;
+  resolved.camera = fit_camera(
+      scene, is_given ? std::vector<VisibleSphere>() : visible_spheres(particles, sources, geometry),
+      aspect);
   // Without fields nothing is sampled.
   resolved.step_size = 1;
   if (scene.render.step_size) {

@@ -124,6 +124,10 @@ std::vector<VisibleSphere> visible_spheres(const ParticleSet& particles,
   }
   if (spheres.empty()) {
     add_corners(fields, spheres);
+    // Nothing is drawn: the place where something could be.
+    if (const Bounds3d box = particles.bounds(); spheres.empty() && !box.empty()) {
+      spheres = {{box.min, 0}, {box.max, 0}};
+    }
     return spheres;
   }
   std::vector<double> radii(spheres.size());
@@ -137,6 +141,12 @@ std::vector<VisibleSphere> visible_spheres(const ParticleSet& particles,
 }
 
 Camera fit_camera(const Scene& scene, const std::vector<VisibleSphere>& spheres, double aspect) {
+  if (scene.eye && scene.target && scene.up) {
+    const Camera given{*scene.eye, *scene.target, *scene.up,
+                       scene.fov_degrees.value_or(default_fov), scene.orthographic_height};
+    camera_axes(given);
+    return given;
+  }
   const Bounds3d box = box_of(spheres);
   const Vector3d sides = box.diagonal();
   const double diagonal = length(sides) > 0 ? length(sides) : 1;

@@ -63,6 +63,7 @@ std::string_view name_of(Reconstruction interpolation);
 /// `select`, `radius`, `weight`, `normalise` and kernels.
 struct Field {
   std::string name;
+  bool visible = true;  ///< else the field is only kept
   std::optional<FieldGrid> grid;
   Selection select;
   std::optional<NumberOrProperty> radius;  ///< nullopt: particles' default radii

@@ -1,0 +1,93 @@
+// Every path of a client goes through resolve() before anything is opened.
+#include "server/files.h"
+
+#include <nlohmann/json.hpp>
+#include <system_error>
+
+#include "core/error.h"
+#include "document/input.h"
+#include "scene/checked_json.h"
+
+namespace motes::server {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+namespace {
+
+/// The value of `key`, if `value` is an object that has one.
+json* find(json& value, const char* key) {
+  if (!value.is_object()) return nullptr;
+  const auto found = value.find(key);
+  return found == value.end() ? nullptr : &*found;
+}
+
+/// All places of a scene that may hold a path; what is not of the right type is left to
+/// parse_scene().
+std::vector<json*> paths_of(json& scene) {
+  std::vector<json*> paths;
+  const auto add = [&paths](json* value) {
+    if (value != nullptr && value->is_string()) paths.push_back(value);
+  };
+  const auto add_in = [&add](json& value, const char* object) {
+    if (json* inner = find(value, object)) add(find(*inner, "path"));
+  };
+  add_in(scene, "data");
+  add_in(scene, "kernel");
+  json* fields = find(scene, "fields");
+  if (fields == nullptr || !fields->is_array()) return paths;
+  for (json& field : *fields) {
+    add(find(field, "grid"));
+    add_in(field, "grid");
+    add_in(field, "kernel");
+  }
+  return paths;
+}
+
+}  // namespace
+
+void Files::allow(const Scene& scene) {
+  std::vector<fs::path> paths{scene.data_path, scene.kernel.shape.profile.path};
+  for (const Field& field : scene.fields) {
+    if (field.grid) paths.push_back(field.grid->path);
+    if (field.kernel_shape) paths.push_back(field.kernel_shape->profile.path);
+  }
+  const std::lock_guard lock(mutex_);
+  for (const fs::path& path : paths) {
+    std::error_code error;
+    const fs::path found = path.empty() ? fs::path() : fs::canonical(path, error);
+    if (!error && !found.empty()) allowed_.insert(found);
+  }
+}
+
+fs::path Files::resolve(std::string_view path) const {
+  if (path.starts_with('/') && path.find('\0') == path.npos) {
+    std::error_code error;
+    const fs::path found = fs::canonical(fs::path(std::string(path)), error);
+    const std::lock_guard lock(mutex_);
+    if (!error && allowed_.contains(found)) return found;
+  }
+  return folder_.resolve(path);
+}
+
+fs::path Files::place_for_upload(std::string_view name) {
+  const std::lock_guard lock(mutex_);
+  const fs::path place = uploads_.place_for(name);
+  allowed_.insert(place);
+  return place;
+}
+
+Scene Files::parse_scene(std::string_view text, const fs::path& directory) const {
+  json scene = parse_json(text, "scene");
+  for (json* path : paths_of(scene)) {
+    *path = resolve((directory / path->get<std::string>()).string()).string();
+  }
+  return motes::parse_scene(scene.dump(), "scene");
+}
+
+Scene Files::open_scene(const fs::path& path) const {
+  if (!is_scene_file(path)) return motes::open_scene(path);
+  return parse_scene(read_text(path), path.parent_path());
+}
+
+}  // namespace motes::server

@@ -1,0 +1,45 @@
+// What clients may name: the shared folder, what they have sent, and what the user has opened.
+#pragma once
+
+#include <filesystem>
+#include <mutex>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scene/scene.h"
+#include "server/folder.h"
+#include "server/uploads.h"
+
+namespace motes::server {
+
+/// Safe from any thread.
+class Files {
+ public:
+  /// Throws Error as Folder does.
+  explicit Files(const std::filesystem::path& folder) : folder_(folder) {}
+
+  const Folder& folder() const { return folder_; }
+  /// Lets clients name all files of a scene that the user has opened.
+  void allow(const Scene& scene);
+
+  /// The file at `path`, relative to the folder or absolute. Throws Error as Folder::resolve() does.
+  std::filesystem::path resolve(std::string_view path) const;
+  /// Where a file that a client sends is put. Throws Error as Uploads does.
+  std::filesystem::path place_for_upload(std::string_view name);
+
+  /// A scene from JSON that is not trusted, its paths relative to `directory`: none of them is
+  /// opened that resolve() does not take. Throws Error as parse_scene() and resolve() do.
+  Scene parse_scene(std::string_view json, const std::filesystem::path& directory) const;
+  /// The scene in `path`, as resolve() has found it, or of the data in it. Throws Error.
+  Scene open_scene(const std::filesystem::path& path) const;
+
+ private:
+  Folder folder_;
+  mutable std::mutex mutex_;
+  std::set<std::filesystem::path> allowed_;  ///< canonical
+  Uploads uploads_;
+};
+
+}  // namespace motes::server

@@ -1,0 +1,28 @@
+// A picture on its way to a page: a header and the bytes of an image file.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace motes::server {
+
+enum class FrameFormat : std::uint16_t { jpeg = 0, png = 1 };
+
+/// What stands before the image: 36 bytes, little-endian, in this order after the four of "MTF1".
+struct FrameHeader {
+  std::uint32_t frame = 0;           ///< counts up for each client
+  std::uint32_t view_sequence = 0;   ///< of the newest "view" that it shows
+  std::uint32_t scene_sequence = 0;  ///< of the client's newest "scene" that it shows
+  FrameFormat format = FrameFormat::jpeg;
+  bool final = false;  ///< the full picture, without loss
+  std::uint32_t width = 0, height = 0;
+  float render_ms = 0, encode_ms = 0;
+};
+
+inline constexpr std::size_t frame_header_bytes = 36;
+
+/// The message: header and image.
+std::string frame_message(const FrameHeader& header, std::string_view image);
+
+}  // namespace motes::server

@@ -1,0 +1,135 @@
+// Two coroutines a socket: one reads, one writes what has been queued.
+#include "server/socket.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+
+#include "core/error.h"
+
+namespace motes::server {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// A mouse gives at most some hundred events a second.
+constexpr double messages_per_second = 300, message_burst = 600;
+/// A client that lets more than this wait is not listening.
+constexpr std::size_t max_waiting_bytes = std::size_t{16} << 20;
+
+websocket::stream_base::timeout timeouts() {
+  websocket::stream_base::timeout timeouts{};
+  timeouts.handshake_timeout = 10s;
+  // Half of it without a word and a ping is sent, which keeps proxies from cutting the line.
+  timeouts.idle_timeout = 40s;
+  timeouts.keep_alive_pings = true;
+  return timeouts;
+}
+
+}  // namespace
+
+Socket::Socket(beast::tcp_stream stream, ClientId id)
+    : stream_(std::move(stream)),
+      id_(id),
+      rate_(messages_per_second, message_burst),
+      something_to_write_(stream_.get_executor(), asio::steady_timer::time_point::max()) {
+  beast::get_lowest_layer(stream_).expires_never();  // the WebSocket has its own timeouts
+  stream_.set_option(timeouts());
+  stream_.read_message_max(max_message_bytes);
+}
+
+asio::awaitable<void> Socket::run(const Request& request, Receiver& receiver) {
+  co_await stream_.async_accept(request, asio::use_awaitable);
+  asio::co_spawn(
+      stream_.get_executor(),
+      [self = shared_from_this()]() -> asio::awaitable<void> { co_await self->write_all(); },
+      asio::detached);
+  co_await read_all(receiver);
+  ended_ = true;
+  wake();
+}
+
+asio::awaitable<void> Socket::read_all(Receiver& receiver) {
+  beast::flat_buffer buffer;
+  while (true) {
+    boost::system::error_code error;
+    co_await stream_.async_read(buffer, asio::redirect_error(asio::use_awaitable, error));
+    if (error) co_return;
+    if (close_reason_) {  // what still comes is of no interest
+      buffer.clear();
+      continue;
+    }
+    try {
+      if (!rate_.take(RateLimit::Clock::now())) throw Error("too many messages");
+      if (!stream_.got_text()) throw Error("expected text");
+      const auto data = buffer.cdata();
+      receiver.receive(*this,
+                       parse_message({static_cast<const char*>(data.data()), data.size()}));
+    } catch (const Error& error_of_client) {
+      close(close_malformed, error_of_client.what());
+    }
+    buffer.clear();
+  }
+}
+
+asio::awaitable<void> Socket::write_all() {
+  const auto self = shared_from_this();
+  while (!ended_) {
+    boost::system::error_code error;
+    const auto into_error = [&error] { return asio::redirect_error(asio::use_awaitable, error); };
+    if (!texts_.empty()) {
+      const std::string text = std::move(texts_.front());
+      texts_.pop_front();
+      text_bytes_ -= text.size();
+      stream_.text(true);
+      co_await stream_.async_write(asio::buffer(text), into_error());
+    } else if (close_reason_) {
+      co_await stream_.async_close(*close_reason_, into_error());
+      co_return;
+    } else if (frame_) {
+      const std::string frame = *std::exchange(frame_, std::nullopt);
+      stream_.binary(true);
+      co_await stream_.async_write(asio::buffer(frame), into_error());
+    } else {
+      something_to_write_.expires_at(asio::steady_timer::time_point::max());
+      co_await something_to_write_.async_wait(into_error());
+      continue;  // woken by an "error"
+    }
+    if (error) co_return cut();
+  }
+}
+
+void Socket::close(websocket::close_code code, std::string_view reason) {
+  if (close_reason_) return;
+  constexpr std::size_t max_reason = 123;  // what a control frame holds
+  close_reason_.emplace(code, std::string(reason.substr(0, max_reason)));
+  wake();
+}
+
+void Socket::send_text(std::string text) {
+  asio::post(stream_.get_executor(), [self = shared_from_this(), text = std::move(text)]() mutable {
+    if (self->ended_ || self->close_reason_) return;
+    self->text_bytes_ += text.size();
+    if (self->text_bytes_ > max_waiting_bytes) return self->cut();
+    self->texts_.push_back(std::move(text));
+    self->wake();
+  });
+}
+
+void Socket::send_frame(std::string message) {
+  asio::post(stream_.get_executor(),
+             [self = shared_from_this(), message = std::move(message)]() mutable {
+               self->frame_ = std::move(message);
+               self->wake();
+             });
+}
+
+void Socket::wake() { something_to_write_.cancel(); }
+
+void Socket::cut() {
+  ended_ = true;
+  beast::get_lowest_layer(stream_).socket().close();
+  wake();
+}
+
+}  // namespace motes::server

@@ -1,0 +1,63 @@
+// A page's WebSocket: messages in, answers and frames out.
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "server/asio.h"
+#include "server/messages.h"
+#include "server/outlet.h"
+#include "server/rate_limit.h"
+
+namespace motes::server {
+
+class Socket : public Outlet, public std::enable_shared_from_this<Socket> {
+ public:
+  using Stream = websocket::stream<beast::tcp_stream>;
+  using Request = http::request<http::empty_body>;
+
+  /// What is done with a client's messages, on the network's thread. What it throws of Error is a
+  /// malformed message.
+  class Receiver {
+   public:
+    virtual ~Receiver() = default;
+    virtual void receive(Socket& from, const Message& message) = 0;
+  };
+
+  Socket(beast::tcp_stream stream, ClientId id);
+
+  ClientId id() const { return id_; }
+  /// Accepts the upgrade and hands messages to `receiver` until either side closes.
+  asio::awaitable<void> run(const Request& request, Receiver& receiver);
+  /// Tells the client why and closes. On the network's thread.
+  void close(websocket::close_code code, std::string_view reason);
+
+  void send_text(std::string text) override;
+  void send_frame(std::string message) override;
+
+ private:
+  asio::awaitable<void> read_all(Receiver& receiver);
+  asio::awaitable<void> write_all();
+  void wake();
+  /// Ends the connection at once, without a word.
+  void cut();
+
+  Stream stream_;
+  const ClientId id_;
+  RateLimit rate_;
+  // What has not left yet; all on the network's thread.
+  std::deque<std::string> texts_;
+  std::size_t text_bytes_ = 0;
+  std::optional<std::string> frame_;
+  std::optional<websocket::close_reason> close_reason_;
+  asio::steady_timer something_to_write_;
+  bool ended_ = false;
+};
+
+/// Application's own close codes.
+inline constexpr auto close_malformed = static_cast<websocket::close_code>(4000);
+inline constexpr auto close_too_many = static_cast<websocket::close_code>(4001);
+
+}  // namespace motes::server

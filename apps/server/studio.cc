@@ -1,0 +1,223 @@
+// The studio's thread: tasks, then the picture that is wanted most, then long work.
+#include "server/studio.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/error.h"
+#include "core/stopwatch.h"
+#include "image/display.h"
+#include "server/answers.h"
+
+namespace motes::server {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// A moving picture that has taken so long is not worth waiting for when there is a newer view.
+constexpr auto late = 120ms;
+/// Long work that was broken off so often is done to its end.
+constexpr int patience = 3;
+
+}  // namespace
+
+Studio::Studio() : thread_([this] { run(); }) {}
+
+Studio::~Studio() { stop(); }
+
+void Studio::stop() {
+  {
+    const std::lock_guard lock(mutex_);
+    ended_ = true;
+    break_off_ = true;
+  }
+  something_to_do_.notify_one();
+  loader_.cancel();
+  lookahead_.cancel();
+  if (thread_.joinable()) thread_.join();
+  viewers_.clear();
+  tasks_.clear();
+  long_tasks_.clear();
+}
+
+void Studio::post(Task task, bool breaks_off) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (ended_) return;
+    tasks_.push_back(std::move(task));
+    if (breaks_off) break_off_if_late();
+  }
+  something_to_do_.notify_one();
+}
+
+void Studio::break_off_if_late() {
+  if (under_way_ == UnderWay::resting ||
+      (under_way_ == UnderWay::moving && Clock::now() - under_way_since_ > late)) {
+    break_off_ = true;
+  }
+}
+
+void Studio::post_for(ClientId client, std::function<void(Viewer&)> task, bool breaks_off) {
+  post(
+      [this, client, task = std::move(task)] {
+        const auto viewer = viewers_.find(client);
+        if (viewer != viewers_.end()) task(viewer->second);
+      },
+      breaks_off);
+}
+
+void Studio::run() {
+  while (run_tasks()) {
+    if (!make_next_picture() && !do_long_task()) wait();
+  }
+}
+
+bool Studio::run_tasks() {
+  while (true) {
+    Task task;
+    {
+      const std::lock_guard lock(mutex_);
+      if (ended_) return false;
+      if (tasks_.empty()) return true;
+      task = std::move(tasks_.front());
+      tasks_.pop_front();
+    }
+    task();
+  }
+}
+
+void Studio::wait() {
+  const auto now = Clock::now();
+  std::optional<Clock::time_point> until;
+  for (const auto& [id, viewer] : viewers_) {
+    const auto change = viewer.next_change(now);
+    if (change && (!until || *change < *until)) until = change;
+  }
+  std::unique_lock lock(mutex_);
+  const auto ready = [this] { return ended_ || !tasks_.empty(); };
+  if (until) {
+    something_to_do_.wait_until(lock, *until, ready);
+  } else {
+    something_to_do_.wait(lock, ready);
+  }
+}
+
+bool Studio::begin(UnderWay what) {
+  const std::lock_guard lock(mutex_);
+  if (ended_ || (what == UnderWay::resting && !tasks_.empty())) return false;
+  under_way_ = what;
+  under_way_since_ = Clock::now();
+  break_off_ = false;
+  return true;
+}
+
+void Studio::end() {
+  const std::lock_guard lock(mutex_);
+  under_way_ = UnderWay::nothing;
+}
+
+bool Studio::make_next_picture() {
+  if (!document_) return false;
+  const auto now = Clock::now();
+  // In turn, those that move before those that do not.
+  Viewers::iterator best = viewers_.end();
+  std::optional<FramePlan> plan;
+  const auto consider = [&](Viewers::iterator it) {
+    const auto next = it->second.next(now);
+    if (next && (!plan || (next->moving && !plan->moving))) {
+      plan = next;
+      best = it;
+    }
+  };
+  const auto after = viewers_.upper_bound(last_served_);
+  for (auto it = after; it != viewers_.end(); ++it) consider(it);
+  for (auto it = viewers_.begin(); it != after; ++it) consider(it);
+  const bool somebody_moves = std::any_of(viewers_.begin(), viewers_.end(), [now](const auto& v) {
+    return v.second.is_moving(now);
+  });
+  if (!plan || (somebody_moves && !plan->moving)) return false;
+  last_served_ = best->first;
+  make_picture(best->second, *plan);
+  return true;
+}
+
+void Studio::make_picture(Viewer& viewer, const FramePlan& plan) {
+  if (!begin(plan.moving ? UnderWay::moving : UnderWay::resting)) return;
+  const Stopwatch stopwatch;
+  const auto scaled = [&plan](int side) {
+    return std::max(1, static_cast<int>(side * plan.scale + 0.5));
+  };
+  bool complete = false;
+  try {
+    // A moving picture that cannot be smaller is waited for, however late.
+    const bool breakable = !plan.moving || plan.scale > Pace::smallest;
+    complete = document_->render(viewer.camera(), scaled(viewer.width()), scaled(viewer.height()),
+                                 plan.final ? Quality::full : Quality::preview,
+                                 breakable ? &break_off_ : nullptr, image_, &statistics_);
+  } catch (const Error& error) {
+    viewer.give_up();
+    viewer.outlet().send_text(error_text({}, error.what()));
+  }
+  end();
+  const double ms = stopwatch.milliseconds();
+  if (!complete) return viewer.broken_off(plan, ms);
+  const RenderSettings& settings = document_->scene().render;
+  viewer.send(plan, image_, settings.termination_opacity, settings.background, ms);
+}
+
+bool Studio::do_long_task() {
+  if (long_tasks_.empty()) return false;
+  auto [task, broken_off] = std::move(long_tasks_.front());
+  long_tasks_.pop_front();
+  if (!begin(UnderWay::resting)) {
+    long_tasks_.emplace_front(std::move(task), broken_off);
+    return true;
+  }
+  const bool done = task(broken_off < patience ? &break_off_ : nullptr);
+  end();
+  if (!done) long_tasks_.emplace_front(std::move(task), broken_off + 1);
+  return true;
+}
+
+void Studio::send_to_all(const std::string& text) {
+  for (auto& [id, viewer] : viewers_) viewer.outlet().send_text(text);
+}
+
+void Studio::send_clients() {
+  std::map<ClientId, std::optional<ClientId>> following;
+  for (const auto& [id, viewer] : viewers_) following[id] = viewer.following();
+  send_to_all(clients_text(following));
+}
+
+void Studio::send_scene(std::optional<ClientId> client, std::optional<std::uint32_t> sequence,
+                        bool new_data) {
+  send_to_all(scene_text(*document_, {name_, frames_, client, sequence, new_data}));
+}
+
+void Studio::send_warnings(const Warnings& warnings) {
+  if (!warnings.lines().empty()) send_to_all(warnings_text(warnings));
+}
+
+bool Studio::save_picture(const PictureRequest& request, const PictureAnswer& answer,
+                          const std::atomic<bool>* cancel) {
+  const auto viewer = viewers_.find(request.client);
+  if (!document_ || viewer == viewers_.end()) {
+    answer({}, "there is nothing to be seen");
+    return true;
+  }
+  try {
+    Framebuffer image;
+    if (!document_->render(viewer->second.camera(), request.width, request.height, Quality::full,
+                           cancel, image)) {
+      return false;
+    }
+    const RenderSettings& settings = document_->scene().render;
+    answer(encode_image(request.format, image, settings.termination_opacity, settings.background),
+           "");
+  } catch (const std::exception& error) {  // Error, or not enough memory
+    answer({}, error.what());
+  }
+  return true;
+}
+
+}  // namespace motes::server

@@ -1,0 +1,146 @@
+// The studio: one scene, those who look at it, and the thread that makes their pictures.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "core/report.h"
+#include "document/document.h"
+#include "image/framebuffer.h"
+#include "image/write_image.h"
+#include "scene/scene.h"
+#include "server/loader.h"
+#include "server/messages.h"
+#include "server/outlet.h"
+#include "server/viewer.h"
+
+namespace motes::server {
+
+/// Something to look at.
+struct Opening {
+  std::string name;              ///< for people
+  std::function<Scene()> scene;  ///< called on the loader's thread; throws Error
+  std::optional<ClientId> client = {};           ///< who asked for it
+  std::optional<std::uint32_t> sequence = {};    ///< by which "scene" message, if by one
+};
+
+/// A picture to be saved.
+struct PictureRequest {
+  ClientId client = 0;  ///< whose view
+  int width = 0, height = 0;
+  ImageFormat format = ImageFormat::png;
+};
+
+/// The picture's file, or nullopt and why there is none. Called on the studio's thread.
+using PictureAnswer = std::function<void(std::optional<std::string> file, std::string error)>;
+
+/// All public functions are safe from any thread and return at once. One thread renders, for one
+/// client after the other: moving views first, then better pictures for those at rest, then what
+/// takes long. What clients do breaks off the work for those at rest, which is begun anew.
+class Studio {
+ public:
+  Studio();
+  ~Studio();
+  Studio(const Studio&) = delete;
+  Studio& operator=(const Studio&) = delete;
+
+  /// Ends the threads and lets go of all outlets. Waits for what is being done.
+  void stop();
+
+  void connect(ClientId client, std::shared_ptr<Outlet> outlet);
+  void disconnect(ClientId client);
+  /// Any message but those about files and scenes.
+  void handle(ClientId client, const Message& message);
+  /// A client's scene, by its message `sequence`.
+  void set_scene(ClientId client, std::uint32_t sequence, Scene scene);
+  /// Opens something; what there is stays until it is ready.
+  void open(Opening opening);
+  void picture(const PictureRequest& request, PictureAnswer answer);
+
+ private:
+  using Clock = Viewer::Clock;
+  using Task = std::function<void()>;
+  using Viewers = std::map<ClientId, Viewer>;
+
+  /// Work that waits until nobody moves: true when it is done, false if it was broken off.
+  using LongTask = std::function<bool(const std::atomic<bool>* cancel)>;
+
+  /// What is being rendered, for those who may want to break it off.
+  enum class UnderWay { nothing, moving, resting };
+
+  /// Has the studio's thread do something, before the next picture.
+  void post(Task task, bool breaks_off);
+  void post_for(ClientId client, std::function<void(Viewer&)> task, bool breaks_off);
+  void break_off_if_late();
+
+  // All that follows is for the studio's thread.
+  void run();
+  /// Does what others have asked for; false: the studio ends.
+  bool run_tasks();
+  /// Makes the picture that is wanted most; false: none is.
+  bool make_next_picture();
+  bool do_long_task();
+  void wait();
+  void make_picture(Viewer& viewer, const FramePlan& plan);
+  /// Says what is being rendered; false if there is something to be done before.
+  bool begin(UnderWay what);
+  void end();
+
+  void send_to_all(const std::string& text);
+  void send_clients();
+  void send_scene(std::optional<ClientId> client, std::optional<std::uint32_t> sequence,
+                  bool new_data);
+  void send_warnings(const Warnings& warnings);
+
+  void look(ClientId client, const Camera& camera, bool moving);
+  void answer(ClientId client, Viewer& viewer, const Message& message);
+  void change_scene(ClientId client, std::uint32_t sequence, const Scene& scene);
+  void start_opening(const Opening& opening);
+  void adopt(const Opening& opening, std::shared_ptr<Document> document, const Warnings& warnings);
+  bool save_picture(const PictureRequest& request, const PictureAnswer& answer,
+                    const std::atomic<bool>* cancel);
+  void count_frames();
+  void prefetch(std::uint64_t frame);
+
+  std::mutex mutex_;
+  std::condition_variable something_to_do_;
+  std::deque<Task> tasks_;
+  UnderWay under_way_ = UnderWay::nothing;
+  Clock::time_point under_way_since_;
+  std::atomic<bool> break_off_ = false;
+  bool ended_ = false;
+
+  std::shared_ptr<Document> document_;  ///< null: nothing opened yet
+  std::string name_;                    ///< of what is open
+  std::optional<std::size_t> frames_;
+  Viewers viewers_;
+  ClientId last_served_ = 0;
+  std::deque<std::pair<LongTask, int>> long_tasks_;  ///< with how often they were broken off
+  Framebuffer image_;
+  RenderStatistics statistics_;
+
+  /// The frame after the present one, read while that is looked at.
+  struct Prefetched {
+    std::uint64_t frame = 0;
+    ParticleSet particles;
+  };
+  std::optional<Prefetched> prefetched_;
+  std::optional<std::uint64_t> prefetching_;
+  const std::atomic<bool> never_ = false;  ///< cancels nothing
+  std::uint64_t opening_ = 0;  ///< counts openings: what an older one brings is dropped
+
+  Loader loader_;    ///< opens
+  Loader lookahead_;  ///< reads what may be wanted next
+  std::thread thread_;
+};
+
+}  // namespace motes::server

@@ -1,0 +1,154 @@
+// What the studio shows: opening, edits, frames.
+#include <new>
+#include <utility>
+
+#include "core/error.h"
+#include "server/answers.h"
+#include "server/studio.h"
+
+namespace motes::server {
+namespace {
+
+/// Calls work(); what goes wrong with files and scenes becomes text.
+template <class Work>
+std::optional<std::string> error_of(const Work& work) {
+  try {
+    work();
+    return {};
+  } catch (const Error& error) {
+    return error.what();
+  } catch (const std::bad_alloc&) {
+    return "not enough memory";
+  }
+}
+
+}  // namespace
+
+void Studio::open(Opening opening) {
+  post([this, opening = std::move(opening)] { start_opening(opening); }, false);
+}
+
+void Studio::start_opening(const Opening& opening) {
+  loader_.cancel();
+  const std::uint64_t number = ++opening_;
+  loader_.add([this, opening, number](const std::atomic<bool>& cancelled) {
+    LoadProgress progress(
+        [this](std::string_view activity, double fraction) {
+          post([this, text = progress_text(activity, fraction)] { send_to_all(text); }, false);
+        },
+        cancelled);
+    std::shared_ptr<Document> document;
+    Warnings warnings;
+    std::optional<std::string> error;
+    try {
+      progress.update("opening " + opening.name, 0);
+      error = error_of([&] {
+        document = std::make_shared<Document>(opening.scene(), &progress, warnings);
+      });
+    } catch (const Cancelled&) {
+      error = "cancelled";
+    }
+    post(
+        [this, opening, number, document, warnings, error] {
+          if (number != opening_) return;  // something else has been asked for since
+          if (document) adopt(opening, document, warnings);
+          if (error && *error != "cancelled") send_to_all(error_text(opening.sequence, *error));
+          send_to_all(ready_text());
+        },
+        true);
+  });
+}
+
+void Studio::adopt(const Opening& opening, std::shared_ptr<Document> document,
+                   const Warnings& warnings) {
+  document_ = std::move(document);
+  name_ = opening.name;
+  frames_.reset();
+  prefetched_.reset();
+  prefetching_.reset();
+  lookahead_.cancel();
+  long_tasks_.clear();
+  for (auto& [id, viewer] : viewers_) {
+    viewer.look_anew(document_->camera());
+    if (opening.client == id && opening.sequence) viewer.took_scene(*opening.sequence);
+  }
+  send_scene(opening.client, opening.sequence, !opening.sequence);
+  send_warnings(warnings);
+  count_frames();
+}
+
+void Studio::count_frames() {
+  lookahead_.add([this, scene = document_->scene(), number = opening_](
+                     const std::atomic<bool>& cancelled) {
+    LoadProgress progress([](std::string_view, double) {}, cancelled);
+    std::size_t frames = 1;
+    if (error_of([&] { frames = Document::count_frames(scene, &progress); })) return;
+    post(
+        [this, frames, number] {
+          if (number != opening_) return;
+          frames_ = frames;
+          send_scene({}, {}, false);
+        },
+        false);
+  });
+}
+
+void Studio::set_scene(ClientId client, std::uint32_t sequence, Scene scene) {
+  post_for(
+      client,
+      [this, client, sequence, scene = std::move(scene)](Viewer&) {
+        change_scene(client, sequence, scene);
+      },
+      true);
+}
+
+void Studio::change_scene(ClientId client, std::uint32_t sequence, const Scene& scene) {
+  Outlet& outlet = viewers_.at(client).outlet();
+  if (!document_ || scene.data_path != document_->scene().data_path ||
+      scene.types != document_->scene().types) {
+    return start_opening(
+        {scene.data_path.filename().string(), [scene] { return scene; }, client, sequence});
+  }
+  const std::uint64_t frame_before = document_->scene().frame;
+  std::optional<ParticleSet> particles;
+  if (prefetched_ && prefetched_->frame == scene.frame) particles = std::move(prefetched_->particles);
+  if (particles) prefetched_.reset();
+  Warnings warnings;
+  LoadProgress progress(
+      [this](std::string_view activity, double fraction) {
+        send_to_all(progress_text(activity, fraction));
+      },
+      never_);
+  const auto error = error_of(
+      [&] { document_->set_scene(scene, &progress, warnings, std::move(particles)); });
+  if (progress.has_reported()) send_to_all(ready_text());
+  if (error) return outlet.send_text(error_text(sequence, *error));
+  for (auto& [id, viewer] : viewers_) viewer.invalidate();
+  viewers_.at(client).took_scene(sequence);
+  send_scene(client, sequence, false);
+  send_warnings(warnings);
+  if (scene.frame != frame_before) prefetch(2 * scene.frame - frame_before);
+}
+
+void Studio::prefetch(std::uint64_t frame) {
+  if (!frames_ || prefetching_ == frame) return;
+  if (frame >= *frames_) frame = 0;  // a loop begins anew
+  prefetching_ = frame;
+  lookahead_.cancel();
+  lookahead_.add([this, scene = document_->scene(), frame, number = opening_](
+                     const std::atomic<bool>& cancelled) {
+    LoadProgress progress([](std::string_view, double) {}, cancelled);
+    Warnings warnings;
+    auto particles = std::make_shared<ParticleSet>();
+    if (error_of([&] { *particles = Document::read_frame(scene, frame, &progress, warnings); })) {
+      return;  // told when it is really wanted
+    }
+    post(
+        [this, frame, particles, number] {
+          if (number == opening_) prefetched_ = Prefetched{frame, std::move(*particles)};
+        },
+        false);
+  });
+}
+
+}  // namespace motes::server
