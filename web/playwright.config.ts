@@ -1,5 +1,6 @@
 // Tests of the page in Chromium against the real program: npm run test:browser
 //   MOTES_PROGRAM   the program; default: ../build/release/motes
+//   MOTES_PAGE      a page in place of the one that the program was built with, such as dist/index.html
 //   MOTES_CHROMIUM  the browser; default: Debian's
 import { defineConfig } from "@playwright/test";
 

@@ -75,7 +75,7 @@ test("opens a file of the folder", async ({ screen, view }) => {
   await screen.open(await view([zeolite]));
   await page.keyboard.press("Control+o");
   await page.getByRole("dialog").getByText("silica.json").click();
-  await expect(page).toHaveTitle(/silica_pull/, { timeout: 60_000 });
+  await expect(page).toHaveTitle(/silica/, { timeout: 60_000 });
   await screen.atRest();
   const slider = page.getByRole("slider", { name: "Time step" });
   await expect(slider).toHaveAttribute("max", "9");

@@ -120,7 +120,7 @@ test("picks a particle and makes it the centre", async ({ screen, view }) => {
     screen.page.mouse.dblclick(box.x + box.width / 2 + 30, box.y + box.height / 2 + 20),
   );
   const card = screen.page.getByRole("region", { name: "Picked particle" });
-  await expect(card.getByRole("heading", { level: 2 })).toHaveText(/^(Si|O|C|H) id \d+$/);
+  await expect(card.getByRole("heading", { level: 2 })).toHaveText(/^(Si|O|C|H) (id|place) \d+$/);
   const centred = (await screen.savedScene()).scene.camera;
   expect(distance(centred.target, start.target)).toBeGreaterThan(0.1);
   const shown = await card.locator("dd").first().textContent();

@@ -53,6 +53,16 @@ export interface SavedScene {
   render: { size: number[]; background: string };
 }
 
+/** Has another page answered for the program's, under the same nonce. */
+async function replacePage(page: Page, file: string): Promise<void> {
+  await page.route(/\/\?token=/, async (route) => {
+    const response = await route.fetch();
+    const nonce = /nonce-([^']+)/.exec(response.headers()["content-security-policy"] ?? "")?.[1];
+    const body = readFileSync(file, "utf8").replaceAll("{{nonce}}", nonce ?? "");
+    await route.fulfill(response.ok() ? { response, body } : { response });
+  });
+}
+
 /** The page as its user meets it. */
 export class Screen {
   /** The newest lossless picture that came, as PNG. */
@@ -78,6 +88,7 @@ export class Screen {
   }
 
   async open(viewer: Viewer): Promise<void> {
+    if (process.env.MOTES_PAGE) await replacePage(this.page, process.env.MOTES_PAGE);
     await this.page.goto(viewer.address.href);
     await this.atRest();
   }

@@ -47,7 +47,8 @@ export function PickedCard() {
       <header>
         {color && <span class="dot" style={{ background: color }} />}
         <h2>
-          {hit.species || "Particle"} <span class="quiet">id {hit.id}</span>
+          {hit.species || "Particle"}{" "}
+          <span class="quiet">{hit.id === null ? `place ${hit.index}` : `id ${hit.id}`}</span>
         </h2>
         <IconButton icon="close" label="Close" onClick={() => (picked.value = null)} />
       </header>

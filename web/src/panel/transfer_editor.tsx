@@ -67,7 +67,7 @@ function histogramPath(histogram: Histogram, layout: Layout): string {
   const log = layout.axis.scale === "log";
   const counts = log ? histogram.log_counts : histogram.counts;
   const min = log ? histogram.positive_min : histogram.min;
-  if (!counts || min === null || !(min < histogram.max)) return "";
+  if (!counts?.length || min === null || !(min < histogram.max)) return "";
   const bins: Axis = { min, max: histogram.max, scale: layout.axis.scale };
   // Logarithms of the counts: values are rare where matter is.
   const most = Math.log1p(Math.max(...counts));

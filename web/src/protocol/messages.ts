@@ -34,6 +34,7 @@ export interface Histogram {
   name: string;
   min: number;
   max: number;
+  /** Empty where the view shows no values. */
   counts: number[];
   /** Over the logarithm of the value, from `positive_min` to `max`. */
   log_counts: number[] | null;
@@ -57,7 +58,9 @@ export interface Statistics {
 
 export interface Hit {
   index: number;
-  id: number;
+  /** Null where the file has none. */
+  id: number | null;
+  /** Empty where there are none. */
   species: string;
   position: Vector;
   distance: number;

@@ -138,6 +138,16 @@ it("takes over what others edit, as a step, but not while its own edit is under 
   expect(page.shown()).toBe(6);
 });
 
+it("keeps its history when a restarted server opens the same data", () => {
+  page.set(2);
+  answer(2);
+  const again = { type: "scene", sequence: null, client: null, new_data: true };
+  receive({ ...again, scene: scene(1), data } as never);
+  expect(page.shown()).toBe(1);
+  page.undoEdit();
+  expect(page.shown()).toBe(2);
+});
+
 it("forgets its history with other data", () => {
   page.set(2);
   answer(2);

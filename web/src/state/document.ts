@@ -141,8 +141,10 @@ function framed(camera: Camera, of: [number, number] = [1, 1]): Camera {
 }
 
 onMessage("scene", (message) => {
-  const newData = message.new_data || message.data.file !== data.peek()?.file;
-  const own = isAnswer(message) && message.client === hello.value?.client;
+  // After a restart the server opens again what this page still looks at: that is nothing new.
+  const mine = message.client === hello.value?.client;
+  const newData = (message.new_data && mine) || message.data.file !== data.peek()?.file;
+  const own = isAnswer(message) && mine;
   data.value = message.data;
   if (own) takeAnswer(message.scene);
   else if (newData || !history.peek()) settle(begin(message.scene));

@@ -10,6 +10,7 @@ import { connected } from "./session";
 import { camera, glideTo, moving } from "./view";
 
 export const picked = signal<Hit | null>(null);
+/** Of the fields that have values in view. */
 export const histograms = signal<Histogram[]>([]);
 export const statistics = signal<Statistics | null>(null);
 
@@ -27,7 +28,7 @@ onMessage("picked", ({ hit }) => {
   else if (camera.peek()) glideTo(lookAt(camera.peek()!, hit.position));
 });
 onMessage("histogram", ({ fields }) => {
-  histograms.value = fields;
+  histograms.value = fields.filter(({ counts }) => counts.length > 0);
 });
 onMessage("statistics", ({ type: _, ...rest }) => {
   statistics.value = rest;

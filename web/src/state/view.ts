@@ -105,11 +105,11 @@ effect(() => {
 });
 
 onMessage("camera", (message) => {
-  if (following.value !== null && message.client === following.value) {
-    // Not sent: a view of its own would end the following.
+  if (message.client === hello.value?.client) {
+    glideTo(message.camera);
+  } else if (!moving.peek()) {
+    // Of the one that is followed. It is not sent: a view of its own would end the following.
     cancelAnimationFrame(gliding);
     camera.value = message.camera;
-  } else if (message.client === hello.value?.client) {
-    glideTo(message.camera);
   }
 });
