@@ -20,7 +20,10 @@ void Viewer::resize(int width, int height) {
 void Viewer::look(const Camera& camera, bool moving, Clock::time_point now) {
   last_view_ = now;
   moving_ = moving;
-  if (camera == camera_ && shown_ > 0) return;
+  if (camera == camera_ && shown_ > 0) {
+    shown_final_ = false;  // the page waits for a picture with the number of this view
+    return;
+  }
   camera_ = camera;
   invalidate();
 }
