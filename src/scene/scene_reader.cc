@@ -184,7 +184,7 @@ FieldGrid read_grid(const Value& value, const std::filesystem::path& directory) 
 }
 
 Field read_field(const Value& value, const std::filesystem::path& directory) {
-  value.check_keys({"name", "grid", "select", "radius", "weight", "normalise", "kernel",
+  value.check_keys({"name", "visible", "grid", "select", "radius", "weight", "normalise", "kernel",
                     "transfer_function", "isosurfaces"});
   Field field;
   value.with("grid", [&](const Value& grid) {
@@ -196,6 +196,7 @@ Field read_field(const Value& value, const std::filesystem::path& directory) {
     }
   });
   value.with("name", [&](const Value& v) { field.name = v.text("a name"); });
+  value.with("visible", [&](const Value& v) { field.visible = v.boolean(); });
   value.with("select", [&](const Value& v) { field.select = read_selection(v); });
   value.with("radius", [&](const Value& v) { field.radius = read_number_or_property(v, true); });
   value.with("weight", [&](const Value& v) { field.weight = read_number_or_property(v, false); });

@@ -69,6 +69,7 @@ json to_json(const FieldGrid& grid, const std::filesystem::path& directory) {
 json to_json(const Field& field, const std::filesystem::path& directory) {
   json out = json::object();
   if (!field.name.empty()) out["name"] = field.name;
+  if (!field.visible) out["visible"] = false;
   if (field.grid) out["grid"] = to_json(*field.grid, directory);
   if (field.select != Selection{}) out["select"] = to_json(field.select);
   if (field.radius) out["radius"] = number_or_property_to_json(*field.radius);
