@@ -1,6 +1,7 @@
 // The renderer: fields of particles with their tree, ready to be looked at from anywhere.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -31,6 +32,9 @@ struct RenderOptions {
   /// to 32, in whole eights.
   std::optional<int> samples_per_pass = std::nullopt;
   Progress* progress = nullptr;
+  /// When it becomes true, render() soon throws Cancelled; the image is then undefined. May be
+  /// null.
+  const std::atomic<bool>* cancel = nullptr;
   /// Surfaces in the way of rays through fields, in place of the renderer's own geometry; empty:
   /// that.
   LayerSource layers = {};
@@ -78,6 +82,9 @@ class Renderer {
   TreeUpdate set_particles(const ParticleSet& particles, const std::vector<FieldSource>& fields,
                            const GeometrySource& geometry = {});
 
+  /// Throws what render() throws for a scene that it cannot render.
+  void check(const ResolvedScene& scene) const;
+
   /// Makes ready what `engine` needs besides the tree. render() does so itself, for its frame
   /// alone.
   void prepare(Engine engine);
@@ -87,6 +94,8 @@ class Renderer {
 
   const KernelSet& kernels() const { return *kernels_; }
   const GridFields& grids() const { return grids_; }
+  /// Balls and sticks over kernels(), or null.
+  const Surface* surface() const { return surface_ ? &*surface_ : nullptr; }
   /// Bytes of balls and sticks besides those of kernels().
   std::size_t surface_bytes() const {
     return surface_ ? surface_->bytes() + field_values_.bytes() : 0;
