@@ -1,109 +1,21 @@
-// Opens scenes and reads their particles.
+// Reads with the console, and finds whose mistake an error is.
 #include "motes/input.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <memory>
-#include <utility>
-
-#include "core/error.h"
-#include "core/stopwatch.h"
-#include "io/grid_reader.h"
-#include "io/reader.h"
-#include "scene/style.h"
 
 namespace motes {
 
-namespace {
-
-/// Throws Error, as a fault of the scene at `scene_path`, if the file that `key` names is not
-/// there.
-void check_exists(const std::filesystem::path& file, const std::string& key,
-                  const std::filesystem::path& scene_path) {
-  std::error_code error;
-  if (file.empty() || std::filesystem::exists(file, error) || error) return;
-  throw Error(scene_path,
-              fmt::format("{}: {}: there is no such file", key, printable(file.string(), 4096)));
-}
-
-/// Makes the grids of its data the fields of a scene that leaves these to the data, and shows the
-/// atoms too, if there are some and no style says what is drawn.
-void show_grids(Scene& scene) {
-  Field of_style;
-  of_style.name = "all";
-  const bool has_style = scene.fields == std::vector<Field>{of_style};
-  const bool is_open = scene.fields.empty() && scene.geometry.empty();
-  if (!(is_open || has_style) || !is_grid_file(scene.data_path)) return;
-  scene.fields.assign(1, {});
-  scene.fields[0].grid.emplace();
-  if (!has_style && has_particles(scene.data_path))
-    scene.geometry = geometry_of_style("volume+balls");
-}
-
-bool shows_particles(const Scene& scene) {
-  return scene.fields.empty() || !scene.geometry.empty() ||
-         std::any_of(scene.fields.begin(), scene.fields.end(),
-                     [](const Field& field) { return !field.grid; });
-}
-
-/// Each file once.
-std::vector<LoadedGrid> read_grids_of(const Scene& scene, Console& console) {
-  const ReadOptions options{scene.types, &console, &console.warnings()};
-  std::vector<LoadedGrid> loaded;
-  for (const Field& field : scene.fields) {
-    if (!field.grid) continue;
-    const std::filesystem::path& path = field.grid->path;
-    if (std::any_of(loaded.begin(), loaded.end(),
-                    [&path](const LoadedGrid& grid) { return grid.path == path; })) {
-      continue;
-    }
-    for (Grid& grid : read_grids(path.empty() ? scene.data_path : path, options)) {
-      loaded.push_back({path, std::make_shared<const Grid>(std::move(grid))});
-    }
-  }
-  return loaded;
-}
-
-}  // namespace
-
-Scene open_scene(const std::filesystem::path& path) {
-  Scene scene;
-  if (!is_scene_file(path)) {
-    scene.data_path = path;
-    show_grids(scene);
-    return scene;
-  }
-  scene = read_scene(path);
-  check_exists(scene.data_path, "data.path", path);
-  for (std::size_t f = 0; f < scene.fields.size(); ++f) {
-    const auto& grid = scene.fields[f].grid;
-    if (grid) check_exists(grid->path, fmt::format("fields[{}].grid", f), path);
-  }
-  if (!scene.data_path.empty()) show_grids(scene);
-  return scene;
-}
-
 Input read_input(const Scene& scene, Console& console) {
-  const Stopwatch stopwatch;
-  Input input;
-  if (shows_particles(scene)) input = read_particles(scene, console);
-  input.grids = read_grids_of(scene, console);
-  input.read_ms = stopwatch.milliseconds();
+  Input input = read_input(scene, &console, console.warnings());
   console.print_warnings();
   return input;
 }
 
 Input read_particles(const Scene& scene, Console& console) {
-  const Stopwatch stopwatch;
-  const ReadOptions options{scene.types, &console, &console.warnings()};
-  const auto trajectory = open_trajectory(scene.data_path, options);
-  Input input;
-  input.format = trajectory->format();
-  input.particles = trajectory->read_frame(scene.frame);
-  input.read_ms = stopwatch.milliseconds();
+  Input input = read_particles(scene, &console, console.warnings());
   console.print_warnings();
-  if (input.particles.size() == 0) throw Error(scene.data_path, "has no particles in this frame");
   return input;
 }
 

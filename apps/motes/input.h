@@ -1,32 +1,18 @@
-// FILE or SCENE.json of the command line -> scene, particles and grids.
+// FILE or SCENE.json of the command line -> scene, particles and grids, with the console.
 #pragma once
 
 #include <filesystem>
 #include <string>
-#include <vector>
 
 #include "core/error.h"
+#include "document/input.h"
 #include "motes/console.h"
 #include "motes/scene_options.h"
-#include "particles/particle_set.h"
-#include "scene/scene.h"
 
 namespace motes {
 
-/// The scene in `path` if it is a scene file, else a scene of the particles or grids in `path`, all
-/// defaults: grids as fields, with balls and sticks if the file has atoms too.
-Scene open_scene(const std::filesystem::path& path);
-
-struct Input {
-  std::string format;
-  ParticleSet particles;
-  std::vector<LoadedGrid> grids;
-  double read_ms = 0;
-};
-
-/// Reads the scene's frame of its particles, if it shows any, and the grids of its fields.
+/// read_input() and read_particles() that print their warnings.
 Input read_input(const Scene& scene, Console& console);
-/// The particles alone.
 Input read_particles(const Scene& scene, Console& console);
 
 /// Throws `message`, a mistake that shows only in the data and knows at most the scene's key, as in
