@@ -1,11 +1,9 @@
-// Reading for the command line.
+// Reads with the console, and finds whose mistake an error is.
 #include "motes/input.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-
-#include "core/error.h"
 
 namespace motes {
 

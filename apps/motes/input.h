@@ -1,4 +1,4 @@
-// Reading for the command line: what goes wrong is told by the options' names.
+// FILE or SCENE.json of the command line -> scene, particles and grids, with the console.
 #pragma once
 
 #include <filesystem>
@@ -11,7 +11,7 @@
 
 namespace motes {
 
-/// read_input() and read_particles() of document/input.h, with progress and warnings for the console.
+/// read_input() and read_particles() that print their warnings.
 Input read_input(const Scene& scene, Console& console);
 Input read_particles(const Scene& scene, Console& console);
 

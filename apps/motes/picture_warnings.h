@@ -2,8 +2,8 @@
 #pragma once
 
 #include "core/report.h"
+#include "document/prepare.h"
 #include "image/framebuffer.h"
-#include "particles/particle_set.h"
 #include "render/renderer.h"
 #include "scene/camera.h"
 
@@ -13,12 +13,6 @@ namespace motes {
 /// Grids have no such limit.
 /// Whether that is so.
 bool warn_of_large_steps(const Renderer& renderer, double step_size, Warnings& warnings);
-
-/// What a message says of where the particles are.
-struct DataExtent {
-  Bounds3d bounds;
-  std::string length_unit;
-};
 
 /// Where nothing in the picture is as opaque as the least level of a screen: whether the kernels
 /// are out of view, or too transparent. `between_samples`: warn_of_large_steps() has said why those

@@ -4,11 +4,9 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "scene/geometry.h"
 #include "scene/style.h"
 
 namespace motes::server {
@@ -53,80 +51,39 @@ json color_maps() {
   return maps;
 }
 
-json species_of(const ParticleSet& particles) {
-  std::vector<std::size_t> counts(particles.species_names.size());
-  for (const std::uint16_t s : particles.species) ++counts[s];
-  json out = json::array();
-  if (particles.species.empty()) return out;
-  const auto colors = colors_of_species(particles, ColorBy::element);
-  for (std::size_t s = 0; s < counts.size(); ++s) {
-    out.push_back({{"name", particles.species_names[s]},
-                   {"count", counts[s]},
-                   {"color", hex(colors[s])}});
-  }
-  return out;
-}
-
-json properties_of(const ParticleSet& particles) {
-  json out = json::array();
-  for (const Property& property : particles.properties) {
-    float low = INFINITY, high = -INFINITY;
-    for (const float value : property.values) {
-      if (!std::isfinite(value)) continue;
-      low = std::min(low, value);
-      high = std::max(high, value);
-    }
-    out.push_back({{"name", property.name}, {"min", low}, {"max", high}});
-  }
-  return out;
-}
-
-json grids_of(const Document& document) {
-  json out = json::array();
-  for (const LoadedGrid& loaded : document.grids()) {
-    out.push_back({{"name", loaded.grid->name}, {"size", loaded.grid->dims}});
-  }
-  return out;
-}
-
-/// One a field of the scene, those that are not visible included.
-json fields_of(const Document& document) {
-  json out = json::array();
-  auto source = document.gathered().sources.begin();
-  for (const Field& field : document.scene().fields) {
-    json entry{{"name", field.name}, {"particles", 0}, {"default_radius", nullptr}};
-    if (field.visible) {
-      entry["particles"] = source->index.size();
-      if (!source->radius.empty()) entry["default_radius"] = source->radius_of(0);
-      ++source;
-    }
-    out.push_back(std::move(entry));
-  }
-  return out;
-}
-
-json data_of(const Document& document, const SceneAnswer& answer) {
-  const ParticleSet& particles = document.particles();
-  const Bounds3d bounds = document.bounds();
-  std::string unit = particles.length_unit;
-  if (particles.size() == 0 && !document.grids().empty()) {
-    unit = document.grids().front().grid->length_unit;
-  }
-  json data{{"file", answer.name},
-            {"format", document.format()},
-            {"particles", particles.size()},
-            {"frames", or_null(answer.frames)},
-            {"time", or_null(particles.time)},
-            {"length_unit", unit},
-            {"bounds", {{"min", to_json(bounds.min)}, {"max", to_json(bounds.max)}}},
-            {"species", species_of(particles)},
-            {"properties", properties_of(particles)},
+json data_of(const DataInfo& info, std::optional<std::size_t> frames) {
+  json data{{"file", info.path.filename().string()},
+            {"format", info.format},
+            {"particles", info.particles},
+            {"frames", or_null(frames)},
+            {"time", or_null(info.time)},
+            {"length_unit", info.length_unit},
+            {"bounds", {{"min", to_json(info.bounds.min)}, {"max", to_json(info.bounds.max)}}},
+            {"species", json::array()},
+            {"properties", json::array()},
             {"cell", nullptr},
-            {"grids", grids_of(document)},
-            {"fields", fields_of(document)}};
-  if (const auto& cell = particles.cell) {
+            {"grids", json::array()},
+            {"fields", json::array()}};
+  for (const SpeciesInfo& species : info.species) {
+    data["species"].push_back(
+        {{"name", species.name}, {"count", species.count}, {"color", hex(species.srgb)}});
+  }
+  for (const PropertyInfo& property : info.properties) {
+    data["properties"].push_back({{"name", property.name},
+                                  {"min", or_null(property.min)},
+                                  {"max", or_null(property.max)}});
+  }
+  if (const auto& cell = info.cell) {
     data["cell"] = {to_json(cell->vectors[0]), to_json(cell->vectors[1]),
                     to_json(cell->vectors[2])};
+  }
+  for (const GridInfo& grid : info.grids) {
+    data["grids"].push_back({{"name", grid.name}, {"size", grid.dims}});
+  }
+  for (const FieldInfo& field : info.fields) {
+    data["fields"].push_back({{"name", field.name},
+                              {"particles", field.particles},
+                              {"default_radius", or_null(field.radius)}});
   }
   return data;
 }
@@ -151,14 +108,15 @@ std::string hello_text(ClientId client) {
                   {"engines", {"sweep", "coherent", "direct", "cells"}}});
 }
 
-std::string scene_text(const Document& document, const SceneAnswer& answer) {
+std::string scene_text(const Document& document, std::optional<std::size_t> frames,
+                       const SceneAnswer& answer) {
   json scene = json::parse(scene_to_json(document.scene(), ""));
   if (!scene.contains("fields")) scene["fields"] = json::array();
   json message{{"type", "scene"},
                {"sequence", or_null(answer.sequence)},
                {"client", or_null(answer.client)},
                {"scene", std::move(scene)},
-               {"data", data_of(document, answer)}};
+               {"data", data_of(document.info(), frames)}};
   if (answer.new_data) message["new_data"] = true;
   return text_of(message);
 }
@@ -177,26 +135,19 @@ std::string warnings_text(const Warnings& warnings) {
   return text_of({{"type", "warnings"}, {"lines", warnings.lines()}});
 }
 
-std::string picked_text(std::uint32_t sequence, const Document& document,
-                        const std::optional<Pick>& pick) {
+std::string picked_text(std::uint32_t sequence, const std::optional<Pick>& pick) {
   json message{{"type", "picked"}, {"sequence", sequence}, {"hit", nullptr}};
   if (!pick) return text_of(message);
-  const ParticleSet& particles = document.particles();
-  const std::size_t i = pick->particle;
-  json hit{{"index", i},
-           {"id", particles.ids.empty() ? json(nullptr) : json(particles.ids[i])},
+  json hit{{"index", pick->index},
+           {"id", or_null(pick->id)},
            {"species", nullptr},
-           {"position", to_json(particles.position(i))},
+           {"position", to_json(pick->position)},
            {"distance", pick->distance},
            {"properties", json::object()},
            {"values", json::object()}};
-  if (!particles.species.empty()) hit["species"] = particles.species_names[particles.species[i]];
-  for (const Property& property : particles.properties) {
-    hit["properties"][property.name] = property.values[i];
-  }
-  for (std::size_t f = 0; f < pick->values.size(); ++f) {
-    hit["values"][document.gathered().fields[f].name] = pick->values[f];
-  }
+  if (!pick->species.empty()) hit["species"] = pick->species;
+  for (const auto& [name, value] : pick->properties) hit["properties"][name] = value;
+  for (const auto& [name, value] : pick->values) hit["values"][name] = value;
   message["hit"] = std::move(hit);
   return text_of(message);
 }
@@ -213,11 +164,10 @@ std::string clients_text(const std::map<ClientId, std::optional<ClientId>>& foll
   return text_of({{"type", "clients"}, {"clients", std::move(clients)}});
 }
 
-std::string histogram_text(const Document& document, const std::vector<Histogram>& histograms) {
+std::string histogram_text(const std::vector<Histogram>& histograms) {
   json fields = json::array();
-  for (std::size_t f = 0; f < histograms.size(); ++f) {
-    const Histogram& histogram = histograms[f];
-    json field{{"name", document.gathered().fields[f].name},
+  for (const Histogram& histogram : histograms) {
+    json field{{"name", histogram.name},
                {"min", histogram.min},
                {"max", histogram.max},
                {"counts", histogram.counts},
@@ -231,15 +181,15 @@ std::string histogram_text(const Document& document, const std::vector<Histogram
 
 std::string statistics_text(const Document& document, const RenderStatistics& frame,
                             double encode_ms, std::size_t clients) {
-  const KernelSet& kernels = document.renderer().kernels();
+  const MemoryUse memory = document.memory();
   return text_of({{"type", "statistics"},
                   {"frame_ms", frame.frame_ms},
                   {"encode_ms", encode_ms},
                   {"samples", frame.samples},
                   {"kernel_evaluations", frame.kernel_evaluations},
-                  {"particles", document.particles().size()},
-                  {"particle_bytes", kernels.particle_bytes()},
-                  {"tree_bytes", kernels.bvh.bytes()},
+                  {"particles", document.info().particles},
+                  {"particle_bytes", memory.particle_bytes},
+                  {"tree_bytes", memory.tree_bytes},
                   {"rss_bytes", resident_bytes()},
                   {"threads", frame.threads},
                   {"engine", frame.engine},

@@ -16,9 +16,6 @@
 
 namespace motes::server {
 
-/// Thrown out of Progress::update() to end work that nobody wants any longer.
-struct Cancelled {};
-
 /// Tells of progress at most some times a second, and ends the work once it is cancelled.
 class LoadProgress : public Progress {
  public:

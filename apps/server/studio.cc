@@ -18,6 +18,8 @@ using namespace std::chrono_literals;
 constexpr auto late = 120ms;
 /// Long work that was broken off so often is done to its end.
 constexpr int patience = 3;
+/// One ray a pixel meets balls, sticks and isosurfaces, and little light is traced.
+const FrameQuality preview{1, 1, 4, false, 0};
 
 }  // namespace
 
@@ -147,20 +149,22 @@ void Studio::make_picture(Viewer& viewer, const FramePlan& plan) {
   const auto scaled = [&plan](int side) {
     return std::max(1, static_cast<int>(side * plan.scale + 0.5));
   };
-  bool complete = false;
   try {
     // A moving picture that cannot be smaller is waited for, however late.
     const bool breakable = !plan.moving || plan.scale > Pace::smallest;
-    complete = document_->render(viewer.camera(), scaled(viewer.width()), scaled(viewer.height()),
-                                 plan.final ? Quality::full : Quality::preview,
-                                 breakable ? &break_off_ : nullptr, image_, &statistics_);
+    document_->render(viewer.camera(), scaled(viewer.width()), scaled(viewer.height()),
+                      plan.final ? FrameQuality{} : preview, breakable ? &break_off_ : nullptr,
+                      image_, &statistics_);
+    end();
+  } catch (const Cancelled&) {
+    end();
+    return viewer.broken_off(plan, stopwatch.milliseconds());
   } catch (const Error& error) {
+    end();
     viewer.give_up();
-    viewer.outlet().send_text(error_text({}, error.what()));
+    return viewer.outlet().send_text(error_text({}, error.what()));
   }
-  end();
   const double ms = stopwatch.milliseconds();
-  if (!complete) return viewer.broken_off(plan, ms);
   const RenderSettings& settings = document_->scene().render;
   viewer.send(plan, image_, settings.termination_opacity, settings.background, ms);
 }
@@ -189,9 +193,8 @@ void Studio::send_clients() {
   send_to_all(clients_text(following));
 }
 
-void Studio::send_scene(std::optional<ClientId> client, std::optional<std::uint32_t> sequence,
-                        bool new_data) {
-  send_to_all(scene_text(*document_, {name_, frames_, client, sequence, new_data}));
+void Studio::send_scene(const SceneAnswer& answer) {
+  send_to_all(scene_text(*document_, frames_, answer));
 }
 
 void Studio::send_warnings(const Warnings& warnings) {
@@ -207,13 +210,12 @@ bool Studio::save_picture(const PictureRequest& request, const PictureAnswer& an
   }
   try {
     Framebuffer image;
-    if (!document_->render(viewer->second.camera(), request.width, request.height, Quality::full,
-                           cancel, image)) {
-      return false;
-    }
+    document_->render(viewer->second.camera(), request.width, request.height, {}, cancel, image);
     const RenderSettings& settings = document_->scene().render;
     answer(encode_image(request.format, image, settings.termination_opacity, settings.background),
            "");
+  } catch (const Cancelled&) {
+    return false;
   } catch (const std::exception& error) {  // Error, or not enough memory
     answer({}, error.what());
   }

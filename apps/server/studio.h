@@ -18,6 +18,7 @@
 #include "image/framebuffer.h"
 #include "image/write_image.h"
 #include "scene/scene.h"
+#include "server/answers.h"
 #include "server/loader.h"
 #include "server/messages.h"
 #include "server/outlet.h"
@@ -97,8 +98,7 @@ class Studio {
 
   void send_to_all(const std::string& text);
   void send_clients();
-  void send_scene(std::optional<ClientId> client, std::optional<std::uint32_t> sequence,
-                  bool new_data);
+  void send_scene(const SceneAnswer& answer);
   void send_warnings(const Warnings& warnings);
 
   void look(ClientId client, const Camera& camera, bool moving);
@@ -120,8 +120,6 @@ class Studio {
   bool ended_ = false;
 
   std::shared_ptr<Document> document_;  ///< null: nothing opened yet
-  std::string name_;                    ///< of what is open
-  std::optional<std::size_t> frames_;
   Viewers viewers_;
   ClientId last_served_ = 0;
   std::deque<std::pair<LongTask, int>> long_tasks_;  ///< with how often they were broken off
@@ -135,6 +133,8 @@ class Studio {
   };
   std::optional<Prefetched> prefetched_;
   std::optional<std::uint64_t> prefetching_;
+  std::optional<std::size_t> frames_;  ///< of the document's file, once they are counted
+  std::shared_ptr<FrameReader> reader_;  ///< for the lookahead's thread alone
   const std::atomic<bool> never_ = false;  ///< cancels nothing
   std::uint64_t opening_ = 0;  ///< counts openings: what an older one brings is dropped
 

@@ -3,8 +3,6 @@
 #include <utility>
 
 #include "core/error.h"
-#include "document/histogram.h"
-#include "document/pick.h"
 #include "server/answers.h"
 #include "server/studio.h"
 
@@ -34,7 +32,7 @@ void Studio::connect(ClientId client, std::shared_ptr<Outlet> outlet) {
         viewer.outlet().send_text(hello_text(client));
         if (document_) {
           viewer.look_anew(document_->camera());
-          viewer.outlet().send_text(scene_text(*document_, {name_, frames_, {}, {}, false}));
+          viewer.outlet().send_text(scene_text(*document_, frames_, {}));
         }
         send_clients();
       },
@@ -84,8 +82,8 @@ void Studio::answer(ClientId client, Viewer& viewer, const Message& message) {
           [&](const PickMessage& m) {
             only_with_document([&] {
               const auto hit =
-                  pick(*document_, viewer.camera(), viewer.width(), viewer.height(), m.x, m.y);
-              viewer.outlet().send_text(picked_text(m.sequence, *document_, hit));
+                  document_->pick(viewer.camera(), viewer.width(), viewer.height(), m.x, m.y);
+              viewer.outlet().send_text(picked_text(m.sequence, hit));
             });
           },
           [&](const FitMessage&) {
@@ -101,9 +99,8 @@ void Studio::answer(ClientId client, Viewer& viewer, const Message& message) {
                   const auto found = viewers_.find(client);
                   if (found == viewers_.end() || !document_) return true;
                   Viewer& v = found->second;
-                  v.outlet().send_text(histogram_text(
-                      *document_, histograms(*document_, v.camera(), std::max(v.width(), 1),
-                                             std::max(v.height(), 1))));
+                  v.outlet().send_text(histogram_text(document_->histogram(
+                      v.camera(), std::max(v.width(), 1), std::max(v.height(), 1))));
                   return true;
                 },
                 0);

@@ -43,7 +43,8 @@ void Studio::start_opening(const Opening& opening) {
     try {
       progress.update("opening " + opening.name, 0);
       error = error_of([&] {
-        document = std::make_shared<Document>(opening.scene(), &progress, warnings);
+        document = std::make_shared<Document>(
+            Document::open(opening.name, opening.scene(), &progress, warnings));
       });
     } catch (const Cancelled&) {
       error = "cancelled";
@@ -62,8 +63,10 @@ void Studio::start_opening(const Opening& opening) {
 void Studio::adopt(const Opening& opening, std::shared_ptr<Document> document,
                    const Warnings& warnings) {
   document_ = std::move(document);
-  name_ = opening.name;
   frames_.reset();
+  if (!document_->info().path.empty()) {
+    reader_ = std::make_shared<FrameReader>(document_->frame_reader());
+  }
   prefetched_.reset();
   prefetching_.reset();
   lookahead_.cancel();
@@ -72,22 +75,21 @@ void Studio::adopt(const Opening& opening, std::shared_ptr<Document> document,
     viewer.look_anew(document_->camera());
     if (opening.client == id && opening.sequence) viewer.took_scene(*opening.sequence);
   }
-  send_scene(opening.client, opening.sequence, !opening.sequence);
+  send_scene({opening.client, opening.sequence, !opening.sequence});
   send_warnings(warnings);
   count_frames();
 }
 
 void Studio::count_frames() {
-  lookahead_.add([this, scene = document_->scene(), number = opening_](
-                     const std::atomic<bool>& cancelled) {
+  if (document_->info().path.empty() || document_->info().particles == 0) return;
+  lookahead_.add([this, reader = reader_, number = opening_](const std::atomic<bool>& cancelled) {
     LoadProgress progress([](std::string_view, double) {}, cancelled);
-    std::size_t frames = 1;
-    if (error_of([&] { frames = Document::count_frames(scene, &progress); })) return;
+    if (error_of([&] { reader->count_frames(&progress); })) return;
     post(
-        [this, frames, number] {
+        [this, number, frames = *reader->num_frames()] {
           if (number != opening_) return;
           frames_ = frames;
-          send_scene({}, {}, false);
+          send_scene({});
         },
         false);
   });
@@ -103,29 +105,31 @@ void Studio::set_scene(ClientId client, std::uint32_t sequence, Scene scene) {
 }
 
 void Studio::change_scene(ClientId client, std::uint32_t sequence, const Scene& scene) {
-  Outlet& outlet = viewers_.at(client).outlet();
-  if (!document_ || scene.data_path != document_->scene().data_path ||
-      scene.types != document_->scene().types) {
+  if (!document_ || document_->shows_other_data(scene)) {
     return start_opening(
         {scene.data_path.filename().string(), [scene] { return scene; }, client, sequence});
   }
   const std::uint64_t frame_before = document_->scene().frame;
-  std::optional<ParticleSet> particles;
-  if (prefetched_ && prefetched_->frame == scene.frame) particles = std::move(prefetched_->particles);
-  if (particles) prefetched_.reset();
   Warnings warnings;
   LoadProgress progress(
       [this](std::string_view activity, double fraction) {
         send_to_all(progress_text(activity, fraction));
       },
       never_);
-  const auto error = error_of(
-      [&] { document_->set_scene(scene, &progress, warnings, std::move(particles)); });
+  const auto error = error_of([&] {
+    if (prefetched_ && prefetched_->frame == scene.frame && scene.frame != frame_before) {
+      ParticleSet particles = std::move(prefetched_->particles);
+      prefetched_.reset();
+      document_->set_scene(scene, std::move(particles), &progress, warnings);
+    } else {
+      document_->set_scene(scene, &progress, warnings);
+    }
+  });
   if (progress.has_reported()) send_to_all(ready_text());
-  if (error) return outlet.send_text(error_text(sequence, *error));
+  if (error) return viewers_.at(client).outlet().send_text(error_text(sequence, *error));
   for (auto& [id, viewer] : viewers_) viewer.invalidate();
   viewers_.at(client).took_scene(sequence);
-  send_scene(client, sequence, false);
+  send_scene({client, sequence});
   send_warnings(warnings);
   if (scene.frame != frame_before) prefetch(2 * scene.frame - frame_before);
 }
@@ -135,12 +139,12 @@ void Studio::prefetch(std::uint64_t frame) {
   if (frame >= *frames_) frame = 0;  // a loop begins anew
   prefetching_ = frame;
   lookahead_.cancel();
-  lookahead_.add([this, scene = document_->scene(), frame, number = opening_](
+  lookahead_.add([this, reader = reader_, frame, number = opening_](
                      const std::atomic<bool>& cancelled) {
     LoadProgress progress([](std::string_view, double) {}, cancelled);
     Warnings warnings;
     auto particles = std::make_shared<ParticleSet>();
-    if (error_of([&] { *particles = Document::read_frame(scene, frame, &progress, warnings); })) {
+    if (error_of([&] { *particles = reader->read_frame(frame, &progress, warnings); })) {
       return;  // told when it is really wanted
     }
     post(

@@ -1,254 +1,337 @@
-// Edits: what has to be done anew is found from what is different.
 #include "document/document.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <iterator>
-#include <set>
+#include <cmath>
 #include <utility>
 
 #include "core/error.h"
-#include "render/grid_fields.h"
+#include "io/grid_reader.h"
+#include "render/resolve.h"
+#include "render/view_profile.h"
+#include "scene/fill_in.h"
 #include "scene/fit.h"
 
 namespace motes {
 namespace {
 
-Kernel kernel_of(const Scene& scene, const Field& field) {
-  Kernel kernel = scene.kernel;
-  if (field.kernel_shape) kernel.shape = *field.kernel_shape;
-  kernel.support_factor = field.support_factor.value_or(kernel.support_factor);
-  kernel.kernel_scale = field.kernel_scale.value_or(kernel.kernel_scale);
-  return kernel;
+/// Whether the particles and weights of a field are the same; radii and weights that were left open
+/// count as equal to what they came to.
+bool gathers_same(const Field& a, const Field& b) {
+  return a.grid == b.grid && a.select == b.select && a.radius == b.radius && a.weight == b.weight &&
+         a.normalise == b.normalise;
 }
 
-bool colored_by_species(const Field& field) {
-  return std::any_of(field.isosurfaces.begin(), field.isosurfaces.end(), [](const Isosurface& s) {
-    return s.color && std::holds_alternative<ColorBy>(*s.color);
+bool asks_for_species(const Field& field) {
+  return std::any_of(field.isosurfaces.begin(), field.isosurfaces.end(), [](const auto& surface) {
+    return surface.color && std::holds_alternative<ColorBy>(*surface.color);
   });
 }
 
-/// A scene without what is looked up frame by frame: two whose remainder is equal take the same of
-/// the data, up to the scales of kernels.
-Scene gathered_part(const Scene& scene) {
-  Scene part;
-  part.data_path = scene.data_path;
-  part.types = scene.types;
-  part.frame = scene.frame;
-  part.geometry = scene.geometry;
-  for (Field field : scene.fields) {
-    if (!field.visible) continue;
-    const bool by_species = colored_by_species(field);
-    field.kernel_shape = kernel_of(scene, field).shape;
-    field.support_factor.reset();
-    field.kernel_scale.reset();
-    field.transfer_function = {};
-    field.isosurfaces.clear();
-    if (by_species) field.isosurfaces.push_back({0, ColorBy::species, 1});
-    part.fields.push_back(std::move(field));
+/// Does `work`; Errors that name no file get the one at `path`.
+template <class Work>
+auto with_path(const std::filesystem::path& path, Work&& work) {
+  try {
+    return work();
+  } catch (const Error& error) {
+    throw Error(path, error.what());
   }
-  return part;
 }
 
-std::vector<Kernel> kernels_of(const Scene& scene) {
-  std::vector<Kernel> kernels;
-  for (const Field& field : scene.fields) {
-    if (field.visible) kernels.push_back(kernel_of(scene, field));
+/// Bins of equal width from low to high.
+std::vector<std::uint64_t> count_values(const std::vector<float>& values, double low, double high,
+                                        bool logarithmic) {
+  const auto place = [&](double v) { return logarithmic ? std::log10(v) : v; };
+  std::vector<std::uint64_t> counts(Histogram::num_bins);
+  const double begin = place(low), width = place(high) - begin;
+  for (const float value : values) {
+    if (!(value >= low && value <= high) || value == 0) continue;
+    const double t = width > 0 ? (place(value) - begin) / width : 0;
+    const auto bin = static_cast<std::size_t>(std::max(t, 0.0) * Histogram::num_bins);
+    ++counts[std::min(bin, Histogram::num_bins - 1)];
   }
-  return kernels;
+  return counts;
 }
 
-bool is_colored_by_fields(const Geometry& geometry) {
-  const auto* by = std::get_if<ColorBy>(&geometry.color);
-  return by != nullptr && *by == ColorBy::field;
-}
-
-std::set<std::filesystem::path> grid_files(const Scene& scene) {
-  std::set<std::filesystem::path> files;
-  for (const Field& field : scene.fields) {
-    if (field.grid) files.insert(field.grid->path);
+Histogram histogram_of(const std::string& name, const std::vector<float>& values) {
+  Histogram histogram;
+  histogram.name = name;
+  bool any = false;
+  for (const float value : values) {
+    if (value == 0 || !std::isfinite(value)) continue;
+    histogram.min = any ? std::min(histogram.min, double{value}) : value;
+    histogram.max = any ? std::max(histogram.max, double{value}) : value;
+    any = true;
+    if (value > 0) {
+      histogram.positive_min = std::min(histogram.positive_min.value_or(value), double{value});
+    }
   }
-  return files;
-}
-
-Renderer make_renderer(const ParticleSet& particles, const GatheredScene& gathered, Engine engine,
-                       Progress* progress) {
-  if (progress != nullptr) progress->update("building the tree", 0);
-  Renderer renderer(particles, gathered.sources, gathered.geometry);
-  renderer.prepare(engine);
-  return renderer;
+  if (!any) return histogram;
+  histogram.counts = count_values(values, histogram.min, histogram.max, false);
+  if (histogram.positive_min) {
+    histogram.log_counts = count_values(values, *histogram.positive_min, histogram.max, true);
+  }
+  return histogram;
 }
 
 }  // namespace
 
-Document::Document(Scene scene, Progress* progress, Warnings& warnings)
-    : input_(read_input(scene, progress, warnings)),
-      gathered_(gather(scene, input_.particles, input_.grids, progress, warnings)),
-      renderer_(make_renderer(input_.particles, gathered_, scene.render.engine, progress)),
-      resolved_(resolve(scene, gathered_, input_.particles, renderer_, progress)),
-      scene_(fill_in(scene, gathered_, resolved_)) {}
+struct Document::Next {
+  Scene scene;
+  std::vector<LoadedGrid> grids;
+  std::optional<ParticleSet> frame;  ///< of a frame that is not the current one
+  std::vector<Field> fields;         ///< all that the scene comes to
+  std::vector<Field> visible;
+};
 
-Bounds3d Document::bounds() const {
-  Bounds3d bounds = input_.particles.bounds();
-  for (const GridField& grid : renderer_.grids()) bounds.add(grid.sampler->bounds());
-  return bounds;
-}
+Document::Document(std::filesystem::path path, Scene scene)
+    : path_(std::move(path)),
+      data_path_(scene.data_path),
+      types_(scene.types),
+      reader_(data_path_, types_) {}
 
-void Document::check_same_data(const Scene& next) const {
-  if (next.data_path != scene_.data_path || next.types != scene_.types) {
-    throw Error("data: expected the file that is open");
+Document Document::open(const std::filesystem::path& path, Scene scene, Progress* progress,
+                        Warnings& warnings) {
+  Document document(path, scene);
+  Next next;
+  next.scene = std::move(scene);
+  if (shows_particles(next.scene)) {
+    document.particles_ = document.reader_.read_frame(next.scene.frame, progress, warnings);
   }
+  next.grids = read_grids_of(next.scene, {}, progress, warnings);
+  with_path(path, [&] {
+    document.expand(next);
+    document.rebuild(next, progress, warnings);
+  });
+  document.describe_data();
+  return document;
 }
 
-Document::Work Document::work_for(const Scene& next) const {
-  if (grid_files(next) != grid_files(scene_)) return Work::read_grids;
-  Scene before = gathered_part(scene_), after = gathered_part(next);
-  if (before.frame != after.frame) return Work::read_frame;
-  if (!(before == after)) return Work::gather;
-  if (kernels_of(scene_) == kernels_of(next)) return Work::resolve;
-  // What balls take of their fields is gathered with them.
-  return std::any_of(next.geometry.begin(), next.geometry.end(), is_colored_by_fields)
-             ? Work::gather
-             : Work::set_kernels;
+std::size_t Document::count_frames(Progress* progress) {
+  if (!info_.frames) info_.frames = data_path_.empty() ? 0 : reader_.count_frames(progress);
+  return *info_.frames;
 }
 
-void Document::set_scene(Scene next, Progress* progress, Warnings& warnings,
-                         std::optional<ParticleSet> frame) {
-  check_same_data(next);
-  if (next.fields.empty() && next.geometry.empty()) show_grids(next);
-  switch (work_for(next)) {
-    case Work::resolve:
-      return resolve_again(std::move(next), progress);
-    case Work::set_kernels:
-      return set_kernels(std::move(next), progress);
-    case Work::gather:
-      return gather_again(std::move(next), nullptr, progress, warnings);
-    case Work::read_frame:
-      if (!frame) frame = read_frame(next, next.frame, progress, warnings);
-      return take_frame(std::move(next), std::move(*frame), progress, warnings);
-    case Work::read_grids: {
-      Input input = read_input(next, progress, warnings);
-      return gather_again(std::move(next), &input, progress, warnings);
-    }
+bool Document::shows_other_data(const Scene& scene) const {
+  return scene.data_path != data_path_ || scene.types != types_;
+}
+
+FrameReader Document::frame_reader() const { return {data_path_, types_}; }
+
+Change Document::set_scene(const Scene& scene, Progress* progress, Warnings& warnings) {
+  const bool other_frame = scene.frame != scene_.frame || particles_.size() == 0;
+  if (shows_other_data(scene) || !shows_particles(scene) || !other_frame) {
+    return take(scene, std::nullopt, progress, warnings);
   }
+  return take(scene, reader_.read_frame(scene.frame, progress, warnings), progress, warnings);
 }
 
-void Document::resolve_again(Scene next, Progress* progress) {
-  GatheredScene gathered{expand_fields(next, input_.particles, input_.grids), {}, {}, {}};
-  std::copy_if(gathered.all_fields.begin(), gathered.all_fields.end(),
-               std::back_inserter(gathered.fields), [](const Field& f) { return f.visible; });
-  // Colours may be asked for that make one field a species.
-  if (gathered.fields.size() != gathered_.fields.size()) {
-    Warnings none;
-    return gather_again(std::move(next), nullptr, progress, none);
-  }
-  gathered.sources = std::move(gathered_.sources);
-  gathered.geometry = std::move(gathered_.geometry);
-  try {
-    ResolvedScene resolved = resolve(next, gathered, input_.particles, renderer_, progress);
-    renderer_.prepare(next.render.engine);
-    scene_ = fill_in(next, gathered, resolved);
-    resolved_ = std::move(resolved);
-  } catch (...) {
-    gathered_.sources = std::move(gathered.sources);
-    gathered_.geometry = std::move(gathered.geometry);
-    throw;
-  }
-  gathered_ = std::move(gathered);
+Change Document::set_scene(const Scene& scene, ParticleSet&& frame, Progress* progress,
+                           Warnings& warnings) {
+  return take(scene, std::move(frame), progress, warnings);
 }
 
-void Document::set_kernels(Scene next, Progress* progress) {
-  const std::vector<Kernel> before = kernels_of(scene_), after = kernels_of(next);
-  const auto set = [this](const std::vector<Kernel>& kernels) {
-    for (std::size_t f = 0; f < kernels.size(); ++f) {
-      if (gathered_.sources[f].grid) continue;
-      gathered_.sources[f].kernel = kernels[f];
-      renderer_.set_kernel(f, kernels[f]);
-    }
+Change Document::set_frame(std::uint64_t frame, ParticleSet&& particles, Progress* progress,
+                           Warnings& warnings) {
+  Scene scene = scene_;
+  scene.frame = frame;
+  return take(scene, std::move(particles), progress, warnings);
+}
+
+Change Document::take(const Scene& scene, std::optional<ParticleSet> frame, Progress* progress,
+                      Warnings& warnings) {
+  if (shows_other_data(scene)) {
+    throw Error("data.path: is not what is shown; expected that it is opened");
+  }
+  Next next;
+  next.scene = scene;
+  next.frame = std::move(frame);
+  next.grids = read_grids_of(scene, grids_, progress, warnings);
+  expand(next);
+  if (next.frame) return move(next, progress, warnings);
+  if (keeps_kernels(next)) return set_kernels(next, progress);
+  return rebuild(next, progress, warnings);
+}
+
+void Document::expand(Next& next) const {
+  const ParticleSet& particles = next.frame ? *next.frame : particles_;
+  color_by_species(next.scene, particles);
+  next.fields = expand_fields(next.scene, particles, next.grids);
+  next.visible = visible_fields(next.fields);
+}
+
+bool Document::keeps_kernels(const Next& next) const {
+  if (next.scene.geometry != scene_.geometry) return false;
+  const std::vector<Field> given = visible_fields(fields_), filled = visible_fields(scene_.fields);
+  if (next.visible.size() != given.size()) return false;
+  for (std::size_t f = 0; f < given.size(); ++f) {
+    const Field& field = next.visible[f];
+    if (!gathers_same(field, given[f]) && !gathers_same(field, filled[f])) return false;
+    if (field.grid) continue;
+    if (kernel_of(field, next.scene.kernel).shape != sources_[f].kernel.shape) return false;
+    if (asks_for_species(field) && !sources_[f].colored_by_species) return false;
+  }
+  return true;
+}
+
+Change Document::set_kernels(Next& next, Progress* progress) {
+  std::vector<FieldSource>& sources = sources_;
+  std::vector<Kernel> old;
+  for (const FieldSource& source : sources) old.push_back(source.kernel);
+  const auto set = [&](std::size_t f, const Kernel& kernel) {
+    if (sources[f].grid || kernel == sources[f].kernel) return false;
+    renderer_->set_kernel(f, kernel);
+    sources[f].kernel = kernel;
+    return true;
   };
-  set(after);
+  Change change = Change::view;
   try {
-    resolve_again(std::move(next), progress);
+    for (std::size_t f = 0; f < sources.size(); ++f) {
+      if (set(f, kernel_of(next.visible[f], next.scene.kernel))) change = Change::kernels;
+    }
+    adopt(next, resolve_with(next, particles_, sources, geometry_, *renderer_, progress), sources);
   } catch (...) {
-    set(before);
+    for (std::size_t f = 0; f < sources.size(); ++f) set(f, old[f]);
     throw;
   }
+  renderer_->prepare(resolved_.render.engine);
+  return change;
 }
 
-void Document::gather_again(Scene next, Input* read, Progress* progress, Warnings& warnings) {
-  const Input& input = read != nullptr ? *read : input_;
-  GatheredScene gathered = gather(next, input.particles, input.grids, progress, warnings);
-  Renderer renderer = make_renderer(input.particles, gathered, next.render.engine, progress);
-  ResolvedScene resolved = resolve(next, gathered, input.particles, renderer, progress);
-  scene_ = fill_in(next, gathered, resolved);
-  gathered_ = std::move(gathered);
+Change Document::rebuild(Next& next, Progress* progress, Warnings& warnings) {
+  GatheredScene gathered =
+      gather_scene(next.scene, next.fields, particles_, next.grids, progress, warnings);
+  if (progress != nullptr) progress->update("building the tree", 0);
+  Renderer renderer(particles_, gathered.sources, gathered.geometry);
+  ResolvedScene resolved =
+      resolve_with(next, particles_, gathered.sources, gathered.geometry, renderer, progress);
+  renderer.prepare(resolved.render.engine);
+  adopt(next, std::move(resolved), gathered.sources);
+  sources_ = std::move(gathered.sources);
+  geometry_ = std::move(gathered.geometry);
   renderer_ = std::move(renderer);
-  resolved_ = std::move(resolved);
-  if (read != nullptr) input_ = std::move(*read);
+  return Change::particles;
 }
 
-void Document::take_frame(Scene next, ParticleSet particles, Progress* progress,
-                          Warnings& warnings) {
-  if (particles.size() == 0) throw Error("data.frame: has no particles in this frame");
-  GatheredScene gathered = gather(next, particles, input_.grids, progress, warnings);
-  renderer_.set_particles(particles, gathered.sources, gathered.geometry);
+Change Document::move(Next& next, Progress* progress, Warnings& warnings) {
+  const ParticleSet& frame = *next.frame;
+  GatheredScene gathered =
+      gather_scene(next.scene, next.fields, frame, next.grids, progress, warnings);
+  if (progress != nullptr) progress->update("moving the particles", 0);
   try {
-    renderer_.prepare(next.render.engine);
-    ResolvedScene resolved = resolve(next, gathered, particles, renderer_, progress);
-    scene_ = fill_in(next, gathered, resolved);
-    resolved_ = std::move(resolved);
+    renderer_->set_particles(frame, gathered.sources, gathered.geometry);
+    ResolvedScene resolved =
+        resolve_with(next, frame, gathered.sources, gathered.geometry, *renderer_, progress);
+    renderer_->prepare(resolved.render.engine);
+    adopt(next, std::move(resolved), gathered.sources);
   } catch (...) {
-    renderer_.set_particles(input_.particles, gathered_.sources, gathered_.geometry);
-    renderer_.prepare(scene_.render.engine);
+    renderer_.emplace(particles_, sources_, geometry_);
+    renderer_->prepare(resolved_.render.engine);
     throw;
   }
-  gathered_ = std::move(gathered);
-  input_.particles = std::move(particles);
+  sources_ = std::move(gathered.sources);
+  geometry_ = std::move(gathered.geometry);
+  particles_ = std::move(*next.frame);
+  describe_data();
+  return Change::frame;
 }
 
-ParticleSet Document::read_frame(const Scene& scene, std::uint64_t frame, Progress* progress,
-                                 Warnings& warnings) {
-  Scene of_frame;
-  of_frame.data_path = scene.data_path;
-  of_frame.types = scene.types;
-  of_frame.frame = frame;
-  return read_particles(of_frame, progress, warnings).particles;
+ResolvedScene Document::resolve_with(const Next& next, const ParticleSet& particles,
+                                     const std::vector<FieldSource>& sources,
+                                     const GeometrySource& geometry, const Renderer& renderer,
+                                     Progress* progress) const {
+  ResolvedScene resolved = resolve(next.scene, particles, next.visible, sources, geometry,
+                                   renderer.kernels(), progress, renderer.grids());
+  renderer.check(resolved);
+  return resolved;
 }
 
-std::size_t Document::count_frames(const Scene& scene, Progress* progress) {
-  if (scene.data_path.empty() || !has_particles(scene.data_path)) return 1;
-  return open_trajectory(scene.data_path, {scene.types, progress, nullptr})->num_frames();
-}
-
-bool Document::render(const Camera& camera, int width, int height, Quality quality,
-                      const std::atomic<bool>* cancel, Framebuffer& image,
-                      RenderStatistics* statistics) const {
-  ResolvedScene view;
-  view.transfer_functions = resolved_.transfer_functions;
-  view.isosurfaces = resolved_.isosurfaces;
-  view.camera = camera;
-  view.step_size = resolved_.step_size;
-  view.render = resolved_.render;
-  view.render.width = width;
-  view.render.height = height;
-  if (quality == Quality::preview) {
-    constexpr int preview_occlusion = 4;
-    view.render.surface.antialiasing = 1;
-    view.render.surface.occlusion_samples =
-        std::min(view.render.surface.occlusion_samples, preview_occlusion);
-    view.render.surface.light_angle = 0;
+void Document::adopt(Next& next, ResolvedScene resolved, const std::vector<FieldSource>& sources) {
+  Scene filled = fill_in(next.scene, next.fields, sources, resolved);
+  std::vector<FieldInfo> fields = field_info(next.fields, sources);
+  scene_ = std::move(filled);
+  resolved_ = std::move(resolved);
+  fields_ = std::move(next.fields);
+  grids_ = std::move(next.grids);
+  info_.fields = std::move(fields);
+  info_.grids.clear();
+  for (const LoadedGrid& loaded : grids_) {
+    info_.grids.push_back({loaded.grid->name, loaded.grid->dims});
   }
-  RenderOptions options;
-  options.cancel = cancel;
-  return renderer_.render(view, options, image, statistics);
+}
+
+void Document::describe_data() {
+  info_.path = data_path_;
+  info_.format = particles_.size() != 0 ? reader_.format() : "";
+  if (info_.format.empty() && !data_path_.empty()) info_.format = grid_format(data_path_);
+  info_.particles = particles_.size();
+  info_.time = particles_.time;
+  info_.species = species_info(particles_);
+  info_.properties = property_info(particles_);
+  info_.cell = particles_.cell;
+  const DataExtent extent = data_extent(particles_, *renderer_, sources_);
+  info_.bounds = extent.bounds;
+  info_.length_unit = extent.length_unit;
 }
 
 Camera Document::fit(double aspect) const {
-  Scene open;
-  open.fov_degrees = scene_.fov_degrees;
-  open.orthographic_height = scene_.orthographic_height;
-  if (open.orthographic_height) open.orthographic_height = length(bounds().diagonal());
-  return fit_camera(
-      open, visible_spheres(input_.particles, gathered_.sources, gathered_.geometry), aspect);
+  Scene open = scene_;
+  open.eye.reset();
+  open.target.reset();
+  open.up.reset();
+  const std::vector<VisibleSphere> spheres = spheres_of_view(particles_, sources_, geometry_);
+  Camera camera = fit_camera(open, spheres, aspect);
+  if (camera.orthographic_height) {
+    const CameraAxes axes = camera_axes(camera);
+    double half = 0;
+    for (const VisibleSphere& sphere : spheres) {
+      const Vector3d v = sphere.center - camera.target;
+      half = std::max({half, std::abs(dot(v, axes.y)) + sphere.radius,
+                       (std::abs(dot(v, axes.x)) + sphere.radius) / aspect});
+    }
+    if (half > 0) camera.orthographic_height = 2 * half;
+  }
+  return camera;
+}
+
+void Document::render(const Camera& camera, int width, int height, const FrameQuality& quality,
+                      const std::atomic<bool>* cancel, Framebuffer& image,
+                      RenderStatistics* statistics) const {
+  ResolvedScene scene = resolved_;
+  scene.camera = camera;
+  scene.step_size *= quality.step_factor;
+  scene.render.width = width;
+  scene.render.height = height;
+  SurfaceSettings& surface = scene.render.surface;
+  surface.antialiasing = quality.antialiasing.value_or(surface.antialiasing);
+  surface.occlusion_samples = quality.occlusion_samples.value_or(surface.occlusion_samples);
+  surface.shadows = surface.shadows && quality.shadows;
+  RenderOptions options;
+  options.threads = quality.threads;
+  options.cancel = cancel;
+  renderer_->render(scene, options, image, statistics);
+}
+
+std::vector<Histogram> Document::histogram(const Camera& camera, int width, int height) const {
+  std::vector<RayProfiles> profiles;
+  if (!sources_.empty()) {
+    profiles =
+        sample_view(renderer_->kernels(), camera, width, height, nullptr, renderer_->grids());
+  }
+  std::vector<Histogram> all;
+  std::size_t number = 0;  // among the visible ones
+  for (const Field& field : scene_.fields) {
+    all.push_back(field.visible ? histogram_of(field.name, profiles[number++].values)
+                                : histogram_of(field.name, {}));
+  }
+  return all;
+}
+
+MemoryUse Document::memory() const {
+  const KernelSet& kernels = renderer_->kernels();
+  return {kernels.size(), kernels.particle_bytes(), kernels.bvh.bytes(),
+          renderer_->surface_bytes()};
 }
 
 }  // namespace motes

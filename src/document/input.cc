@@ -1,4 +1,4 @@
-// Opens scenes and reads what they show.
+// Opens scenes and reads their particles.
 #include "document/input.h"
 
 #include <fmt/format.h>
@@ -19,12 +19,6 @@ namespace motes {
 
 namespace {
 
-Scene read_standard_input() {
-  const std::string text((std::istreambuf_iterator<char>(std::cin)),
-                         std::istreambuf_iterator<char>());
-  return parse_scene(text, "-");
-}
-
 /// Throws Error, as a fault of the scene at `scene_path`, if the file that `key` names is not
 /// there.
 void check_exists(const std::filesystem::path& file, const std::string& key,
@@ -35,10 +29,9 @@ void check_exists(const std::filesystem::path& file, const std::string& key,
               fmt::format("{}: {}: there is no such file", key, printable(file.string(), 4096)));
 }
 
-}  // namespace
-
+/// Makes the grids of its data the fields of a scene that leaves these to the data, and shows the
+/// atoms too, if there are some and no style says what is drawn.
 void show_grids(Scene& scene) {
-  // Atoms are shown too, if there are some and no style says what is drawn.
   Field of_style;
   of_style.name = "all";
   const bool has_style = scene.fields == std::vector<Field>{of_style};
@@ -50,7 +43,12 @@ void show_grids(Scene& scene) {
     scene.geometry = geometry_of_style("volume+balls");
 }
 
-namespace {
+Scene read_scene_from(std::istream& stream, const std::filesystem::path& name) {
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  return parse_scene(text, name);
+}
+
+}  // namespace
 
 bool shows_particles(const Scene& scene) {
   return scene.fields.empty() || !scene.geometry.empty() ||
@@ -58,16 +56,17 @@ bool shows_particles(const Scene& scene) {
                      [](const Field& field) { return !field.grid; });
 }
 
-/// Each file once.
-std::vector<LoadedGrid> read_grids_of(const Scene& scene, Progress* progress,
-                                      Warnings& warnings) {
+std::vector<LoadedGrid> read_grids_of(const Scene& scene, const std::vector<LoadedGrid>& known,
+                                      Progress* progress, Warnings& warnings) {
   const ReadOptions options{scene.types, progress, &warnings};
   std::vector<LoadedGrid> loaded;
   for (const Field& field : scene.fields) {
     if (!field.grid) continue;
     const std::filesystem::path& path = field.grid->path;
-    if (std::any_of(loaded.begin(), loaded.end(),
-                    [&path](const LoadedGrid& grid) { return grid.path == path; })) {
+    const auto is_of_path = [&path](const LoadedGrid& grid) { return grid.path == path; };
+    if (std::any_of(loaded.begin(), loaded.end(), is_of_path)) continue;
+    if (std::any_of(known.begin(), known.end(), is_of_path)) {
+      std::copy_if(known.begin(), known.end(), std::back_inserter(loaded), is_of_path);
       continue;
     }
     for (Grid& grid : read_grids(path.empty() ? scene.data_path : path, options)) {
@@ -77,17 +76,15 @@ std::vector<LoadedGrid> read_grids_of(const Scene& scene, Progress* progress,
   return loaded;
 }
 
-}  // namespace
-
 Scene open_scene(const std::filesystem::path& path) {
   Scene scene;
-  const bool standard_input = path == "-";
-  if (!standard_input && !is_scene_file(path)) {
+  const bool is_piped = path == "-";
+  if (!is_piped && !is_scene_file(path)) {
     scene.data_path = path;
     show_grids(scene);
     return scene;
   }
-  scene = standard_input ? read_standard_input() : read_scene(path);
+  scene = is_piped ? read_scene_from(std::cin, path) : read_scene(path);
   check_exists(scene.data_path, "data.path", path);
   for (std::size_t f = 0; f < scene.fields.size(); ++f) {
     const auto& grid = scene.fields[f].grid;
@@ -101,14 +98,15 @@ Input read_input(const Scene& scene, Progress* progress, Warnings& warnings) {
   const Stopwatch stopwatch;
   Input input;
   if (shows_particles(scene)) input = read_particles(scene, progress, warnings);
-  input.grids = read_grids_of(scene, progress, warnings);
+  input.grids = read_grids_of(scene, {}, progress, warnings);
   input.read_ms = stopwatch.milliseconds();
   return input;
 }
 
 Input read_particles(const Scene& scene, Progress* progress, Warnings& warnings) {
   const Stopwatch stopwatch;
-  const auto trajectory = open_trajectory(scene.data_path, {scene.types, progress, &warnings});
+  const ReadOptions options{scene.types, progress, &warnings};
+  const auto trajectory = open_trajectory(scene.data_path, options);
   Input input;
   input.format = trajectory->format();
   input.particles = trajectory->read_frame(scene.frame);

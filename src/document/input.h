@@ -1,4 +1,4 @@
-// FILE or SCENE.json -> scene, particles and grids.
+// A file or a scene -> scene, particles and grids.
 #pragma once
 
 #include <filesystem>
@@ -12,15 +12,10 @@
 namespace motes {
 
 /// The scene in `path` if it is a scene file, else a scene of the particles or grids in `path`, all
-/// defaults: grids as fields, with balls and sticks if the file has atoms too. "-": a scene on
-/// standard input, whose paths are relative to the working directory. Throws Error.
+/// defaults: grids as fields, with balls and sticks if the file has atoms too. "-" is a scene on
+/// standard input, whose relative paths are relative to the working directory. Throws Error.
 Scene open_scene(const std::filesystem::path& path);
 
-/// Completes a scene that leaves its fields to the data: where these are grids, they are the
-/// fields. open_scene() does so.
-void show_grids(Scene& scene);
-
-/// What a scene is of.
 struct Input {
   std::string format;
   ParticleSet particles;
@@ -28,9 +23,16 @@ struct Input {
   double read_ms = 0;
 };
 
-/// Reads the scene's frame of its particles, if it shows any, and the grids of its fields.
+/// Whether any field or geometry of `scene` is one of particles.
+bool shows_particles(const Scene& scene);
+
+/// Reads the scene's frame of its particles, if it shows any, and the grids of its fields. Throws
+/// Error, and what `progress` throws.
 Input read_input(const Scene& scene, Progress* progress, Warnings& warnings);
-/// The particles alone. Throws Error where there are none.
+/// The particles alone.
 Input read_particles(const Scene& scene, Progress* progress, Warnings& warnings);
+/// The grids of the scene's fields, each file once: those of `known` where they are there.
+std::vector<LoadedGrid> read_grids_of(const Scene& scene, const std::vector<LoadedGrid>& known,
+                                      Progress* progress, Warnings& warnings);
 
 }  // namespace motes

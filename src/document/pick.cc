@@ -1,225 +1,227 @@
-// A ray of its own, sampled more coarsely than a picture's, in double precision.
-#include "document/pick.h"
-
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_reduce.h>
-
+// What is seen at a pixel.
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
+#include "document/document.h"
 #include "render/clip.h"
-#include "render/grid_fields.h"
+#include "render/view_ray.h"
+#include "surface/cut.h"
 #include "surface/trace.h"
 
 namespace motes {
 namespace {
 
-/// Samples of a ray at most: a place is found to a thousandth of the way through the volume.
-constexpr double max_samples = 1000;
-/// Rays that are less opaque show nothing that anybody would mean.
-constexpr double least_opacity = 0.02;
+constexpr double least_opacity = 0.01;
+constexpr double max_samples = 1024;  // of a ray
+constexpr std::size_t no_field = std::numeric_limits<std::size_t>::max();
 
-double length_squared(const Vector3d& v) { return dot(v, v); }
-
-struct Ray {
-  Point3d origin;
-  Vector3d direction;  ///< of length 1 along the view
-};
-
-Ray ray_through(const Camera& camera, int width, int height, double x, double y) {
-  const CameraAxes axes = camera_axes(camera);
-  const double half = half_height(camera);
-  const double u = (2 * x / width - 1) * half * width / height;
-  const double v = (1 - 2 * y / height) * half;
-  if (camera.orthographic_height) return {camera.eye + u * axes.x + v * axes.y, axes.forward};
-  return {camera.eye, axes.forward + u * axes.x + v * axes.y};
-}
-
-/// The part of the ray that the clip planes leave.
-DepthRange cut(DepthRange range, const Ray& ray, const std::vector<ClipPlane>& planes) {
+/// Leaves of `range` what no plane cuts away.
+DepthRange cut_range(DepthRange range, const ViewRay& ray, std::span<const ClipPlane> planes) {
   for (const ClipPlane& plane : planes) {
-    const double slope = dot(plane.normal, ray.direction);
-    const double room = plane.distance * length(plane.normal) -
-                        dot(plane.normal, Vector3d(ray.origin));
-    if (slope > 0) range.far = std::min(range.far, room / slope);
-    if (slope < 0) range.near = std::max(range.near, room / slope);
-    if (slope == 0 && room < 0) return {1, 0};
+    const Vector3d normal = normalize(plane.normal);
+    const double inside = plane.distance - dot(normal, ray.origin - Point3d{});
+    const double slope = dot(normal, ray.direction);
+    if (slope > 0) range.far = std::min(range.far, inside / slope);
+    if (slope < 0) range.near = std::max(range.near, inside / slope);
+    if (slope == 0 && inside < 0) return {1, 0};
   }
   return range;
 }
 
-/// Extinction at a value of the field (docs/field.md, "Transfer functions").
-double extinction_at(const TransferFunction& function, double value) {
-  if (std::isnan(value)) return 0;
-  const auto& points = function.points;
-  const auto scaled = [&function](double v) { return function.log_scale ? std::log10(v) : v; };
-  if (!(value > points.front().value)) return points.front().extinction;
-  if (value >= points.back().value) return points.back().extinction;
-  const auto next =
-      std::upper_bound(points.begin(), points.end(), value,
-                       [](double v, const TransferFunction::Point& p) { return v < p.value; });
-  const auto last = next - 1;
-  const double t =
-      (scaled(value) - scaled(last->value)) / (scaled(next->value) - scaled(last->value));
-  return last->extinction + t * (next->extinction - last->extinction);
+/// The first ball or stick on the ray; as trace() has it.
+SurfaceHit find_solid(const Surface& surface, const ViewRay& ray,
+                      std::span<const ClipPlane> planes) {
+  const KernelSet& kernels = *surface.kernels;
+  const double scale = kernels.length_scale;
+  const Point3d origin = Point3d{} + scale * (ray.origin - kernels.origin);
+  if (planes.empty()) return trace(surface, origin, scale * ray.direction);
+  std::vector<ClipPlane> internal;
+  for (const ClipPlane& plane : planes) {
+    const Vector3d normal = normalize(plane.normal);
+    const double distance = plane.distance - dot(normal, kernels.origin - Point3d{});
+    internal.push_back({normal, scale * distance});
+  }
+  return trace(cut(surface, internal), origin, scale * ray.direction);
 }
 
-/// Depths along a ray, and all fields there.
-struct RaySamples {
-  std::vector<double> depths;
-  double spacing = 0;
-  std::vector<FieldSample> values;  ///< [depth][field]
+/// A place on the ray at which its opacity grows.
+struct OpacityStep {
+  double depth = 0;
+  double opacity = 0;            ///< of the ray, up to and with this
+  std::size_t field = no_field;  ///< whose isosurface it is; no_field: of the volume
 };
 
-RaySamples sample(const Renderer& renderer, const Ray& ray, const DepthRange& range, double step) {
-  RaySamples samples;
-  if (!(range.near < range.far)) return samples;
-  const double way = range.far - range.near;
-  const double count = std::ceil(std::clamp(way / step, 1.0, max_samples));
-  samples.spacing = way / count;
-  std::vector<Point3d> points;
-  for (double k = 0.5; k < count; ++k) {
-    samples.depths.push_back(range.near + k * samples.spacing);
-    points.push_back(ray.origin + samples.depths.back() * ray.direction);
-  }
-  constexpr double outside = std::numeric_limits<double>::quiet_NaN();
-  samples.values = probe(renderer.kernels(), renderer.grids(), points, outside);
-  return samples;
-}
+/// Walks a ray through the fields.
+class FieldWalk {
+ public:
+  FieldWalk(const Renderer& renderer, const ResolvedScene& scene, const ViewRay& ray)
+      : renderer_(renderer), scene_(scene), ray_(ray) {}
 
-/// The first crossing of an isosurface; infinity: none.
-double isosurface_depth(const RaySamples& samples, const ResolvedScene& scene, std::size_t fields) {
-  for (std::size_t k = 1; k < samples.depths.size(); ++k) {
-    for (const ResolvedIsosurface& surface : scene.isosurfaces) {
-      const double a = samples.values[(k - 1) * fields + surface.field].value - surface.value;
-      const double b = samples.values[k * fields + surface.field].value - surface.value;
-      if (a * b < 0) return samples.depths[k] - samples.spacing * b / (b - a);
+  /// The layers between `range`'s ends, from the front.
+  std::vector<OpacityStep> layers(const DepthRange& range) const {
+    std::vector<OpacityStep> found;
+    const std::size_t num_fields = scene_.transfer_functions.size();
+    if (num_fields == 0 || !(range.near < range.far)) return found;
+    const double depth = range.far - range.near;
+    const double step = std::max(scene_.step_size, depth / max_samples);
+    std::vector<Point3d> points;
+    for (double z = range.near + step / 2; z < range.far; z += step) points.push_back(ray_.at(z));
+    const std::vector<FieldSample> samples = values_at(points);
+    double transparency = 1;
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      const double z = range.near + (static_cast<double>(k) + 0.5) * step;
+      const std::span now = std::span(samples).subspan(k * num_fields, num_fields);
+      if (k > 0) {
+        const std::span before = std::span(samples).subspan((k - 1) * num_fields, num_fields);
+        for (const ResolvedIsosurface& surface : scene_.isosurfaces) {
+          const std::size_t f = surface.field;
+          if ((before[f].value < surface.value) == (now[f].value < surface.value)) continue;
+          transparency *= 1 - double{surface.opacity};
+          found.push_back({find_crossing(surface, z - step, z), 1 - transparency, f});
+        }
+      }
+      double extinction = 0;
+      for (std::size_t f = 0; f < num_fields; ++f) extinction += extinction_of(f, now[f].value);
+      if (extinction == 0) continue;
+      transparency *= std::exp(-extinction * step * length(ray_.direction));
+      found.push_back({z, 1 - transparency, no_field});
     }
+    return found;
   }
-  return std::numeric_limits<double>::infinity();
-}
 
-/// Where half of the opacity is met that the volume has in front of `end`; infinity where that is
-/// next to nothing.
-double volume_depth(const RaySamples& samples, const ResolvedScene& scene, double ray_length,
-                    double end) {
-  const std::size_t fields = scene.transfer_functions.size();
-  std::vector<double> opacity{0};  // in front of each sample, and behind the last
-  for (std::size_t k = 0; k < samples.depths.size() && samples.depths[k] < end; ++k) {
-    double extinction = 0;
-    for (std::size_t f = 0; f < fields; ++f) {
-      extinction +=
-          extinction_at(scene.transfer_functions[f], samples.values[k * fields + f].value);
+  /// Outside of its grid a field has no value.
+  std::vector<FieldSample> values_at(std::span<const Point3d> points) const {
+    return probe(renderer_.kernels(), renderer_.grids(), points,
+                 std::numeric_limits<double>::quiet_NaN());
+  }
+  double extinction_of(std::size_t field, double value) const {
+    return std::isnan(value) ? 0 : point_at(scene_.transfer_functions[field], value).extinction;
+  }
+
+ private:
+  /// By bisection between two depths on different sides of the level.
+  double find_crossing(const ResolvedIsosurface& surface, double near, double far) const {
+    const auto below = [&](double z) {
+      const Point3d point = ray_.at(z);
+      return values_at({&point, 1})[surface.field].value < surface.value;
+    };
+    const bool at_near = below(near);
+    for (int i = 0; i < 20; ++i) {
+      const double middle = 0.5 * (near + far);
+      (below(middle) == at_near ? near : far) = middle;
     }
-    const double passes = std::exp(-extinction * samples.spacing * ray_length);
-    opacity.push_back(1 - (1 - opacity.back()) * passes);
+    return 0.5 * (near + far);
   }
-  if (opacity.back() < least_opacity) return std::numeric_limits<double>::infinity();
-  const auto half = std::lower_bound(opacity.begin(), opacity.end(), opacity.back() / 2);
-  const auto k = static_cast<std::size_t>(std::max<std::ptrdiff_t>(half - opacity.begin() - 1, 0));
-  return samples.depths[k];
-}
 
-/// What is nearest by some measure.
-struct Nearest {
-  double measure = std::numeric_limits<double>::infinity();
-  std::uint32_t particle = 0;
-
-  void consider(double m, std::uint32_t i) {
-    if (m < measure || (m == measure && i < particle)) *this = {m, i};
-  }
+  const Renderer& renderer_;
+  const ResolvedScene& scene_;
+  const ViewRay& ray_;
 };
-
-/// The smallest of measure(i) over i in [0, size), with the particle that it gives.
-template <class Consider>
-Nearest nearest_of(std::size_t size, const Consider& consider) {
-  return tbb::parallel_reduce(
-      tbb::blocked_range<std::size_t>(0, size, 65536), Nearest{},
-      [&consider](const auto& range, Nearest nearest) {
-        for (std::size_t i = range.begin(); i < range.end(); ++i) consider(i, nearest);
-        return nearest;
-      },
-      [](Nearest a, const Nearest& b) {
-        a.consider(b.measure, b.particle);
-        return a;
-      });
-}
-
-/// The particle nearest to a place, of those that are drawn: the centre of a ball.
-Nearest drawn_at(const Document& document, const Point3d& center) {
-  const ParticleSet& particles = document.particles();
-  const auto& index = document.gathered().geometry.index;
-  return nearest_of(index.size(), [&](std::size_t i, Nearest& nearest) {
-    nearest.consider(length_squared(particles.position(index[i]) - center), index[i]);
-  });
-}
 
 /// The particle of a field with the largest kernel at a place.
-Nearest largest_kernel_at(const Document& document, const Point3d& place) {
-  const ParticleSet& particles = document.particles();
-  Nearest largest;
-  for (const FieldSource& source : document.gathered().sources) {
-    const Nearest of_field = nearest_of(source.index.size(), [&](std::size_t i, Nearest& nearest) {
-      const double radius = source.radius_of(i);
-      const double q2 = length_squared(particles.position(source.index[i]) - place) /
-                        (radius * radius);
-      const double support = source.kernel.support();
-      if (q2 > support * support) return;
-      // Kernels fall with q, so the nearest in radii is the largest, but for its weight.
-      nearest.consider(q2 / std::max(std::abs(source.weight_of(i)), 1e-30F), source.index[i]);
-    });
-    largest.consider(of_field.measure, of_field.particle);
+struct Largest {
+  double kernel = 0, sum = 0;  ///< magnitudes: the largest, and of all kernels
+  std::uint32_t particle = no_particle;
+};
+
+/// Every particle is looked at: a scan takes milliseconds a million, and no memory.
+Largest find_largest(const ParticleSet& particles, const FieldSource& source,
+                     const Point3d& place) {
+  Largest largest;
+  const double support = source.kernel.support();
+  for (std::size_t i = 0; i < source.index.size(); ++i) {
+    const double radius = source.radius_of(i);
+    const Vector3d d = place - particles.position(source.index[i]);
+    if (dot(d, d) > support * support * radius * radius) continue;
+    const double norm = source.normalise ? 1 / (radius * radius * radius) : 1;
+    const double kernel =
+        std::abs(source.weight_of(i) * norm * evaluate(source.kernel, length(d) / radius).value);
+    largest.sum += kernel;
+    if (kernel > largest.kernel) {
+      largest.kernel = kernel;
+      largest.particle = source.index[i];
+    }
   }
   return largest;
 }
 
+/// Of the particles that are drawn the one at `place`, which is right to single precision.
+std::uint32_t nearest_drawn(const ParticleSet& particles, const GeometrySource& geometry,
+                            const Point3d& place) {
+  std::uint32_t nearest = no_particle;
+  double least = std::numeric_limits<double>::infinity();
+  for (const std::uint32_t i : geometry.index) {
+    const Vector3d d = particles.position(i) - place;
+    if (!(dot(d, d) < least)) continue;
+    least = dot(d, d);
+    nearest = i;
+  }
+  return nearest;
+}
+
+Pick describe(const ParticleSet& particles, std::uint32_t index) {
+  Pick pick;
+  pick.index = index;
+  pick.position = particles.position(index);
+  if (!particles.ids.empty()) pick.id = particles.ids[index];
+  if (!particles.species.empty()) pick.species = particles.species_names[particles.species[index]];
+  for (const Property& property : particles.properties) {
+    pick.properties.emplace_back(property.name, property.values[index]);
+  }
+  return pick;
+}
+
 }  // namespace
 
-std::optional<Pick> pick(const Document& document, const Camera& camera, int width, int height,
-                         double x, double y) {
-  const Renderer& renderer = document.renderer();
-  const KernelSet& kernels = renderer.kernels();
-  const ResolvedScene& scene = document.resolved();
-  const Ray ray = ray_through(camera, width, height, x, y);
-  const double ray_length = length(ray.direction);
-  constexpr double nowhere = std::numeric_limits<double>::infinity();
-
-  SurfaceHit hit;
-  if (renderer.surface() != nullptr) {
-    const Vector3d from_origin = kernels.length_scale * (ray.origin - kernels.origin);
-    hit = trace(*renderer.surface(), Point3d(from_origin), ray.direction);
+std::optional<Pick> Document::pick(const Camera& camera, int width, int height, double x,
+                                   double y) const {
+  const KernelSet& kernels = renderer_->kernels();
+  const std::vector<ClipPlane>& planes = resolved_.render.clip_planes;
+  const ViewRay ray = view_ray(camera, camera_axes(camera), static_cast<double>(width) / height,
+                               x / width, y / height);
+  SurfaceHit solid;
+  if (renderer_->surface() != nullptr) solid = find_solid(*renderer_->surface(), ray, planes);
+  const FieldWalk walk(*renderer_, resolved_, ray);
+  std::vector<OpacityStep> layers;
+  if (!sources_.empty()) {
+    DepthRange range = clip(volume_box(kernels, renderer_->grids()), ray.origin, ray.direction);
+    range.far = std::min(range.far, solid.depth);
+    layers = walk.layers(cut_range(range, ray, planes));
   }
-  const double ball = hit.any() ? hit.depth / kernels.length_scale : nowhere;
+  if (solid.any()) layers.push_back({solid.depth, 1, no_field});
+  if (layers.empty() || layers.back().opacity < least_opacity) return std::nullopt;
+  const auto at = std::find_if(layers.begin(), layers.end(), [&](const OpacityStep& layer) {
+    return layer.opacity >= layers.back().opacity / 2;
+  });
+  const Point3d place = ray.at(at->depth);
+  const std::vector<FieldSample> values = walk.values_at({&place, 1});
 
-  RaySamples samples;
-  const std::size_t fields = scene.transfer_functions.size();
-  if (fields > 0) {
-    DepthRange range = clip(volume_box(kernels, renderer.grids()), ray.origin, ray.direction);
-    range = cut(range, ray, scene.render.clip_planes);
-    samples = sample(renderer, ray, range, scene.step_size);
-  }
-  const double surface = std::min(ball, isosurface_depth(samples, scene, fields));
-  const double depth = std::min(surface, volume_depth(samples, scene, ray_length, surface));
-  if (depth == nowhere) return {};
-
-  Pick pick;
-  pick.place = ray.origin + depth * ray.direction;
-  pick.distance = depth * ray_length;
-  Nearest nearest;
-  if (depth == ball) {
-    const Point3f center{kernels.x[hit.particle], kernels.y[hit.particle], kernels.z[hit.particle]};
-    nearest = drawn_at(document, kernels.origin + Vector3d{center.x, center.y, center.z} /
-                                                      kernels.length_scale);
+  std::uint32_t particle = no_particle;
+  if (solid.any() && at + 1 == layers.end()) {
+    const std::uint32_t i = solid.particle;
+    const Vector3d from_origin{kernels.x[i], kernels.y[i], kernels.z[i]};
+    particle =
+        nearest_drawn(particles_, geometry_, kernels.origin + from_origin / kernels.length_scale);
   } else {
-    nearest = largest_kernel_at(document, pick.place);
+    double best = 0;
+    for (std::size_t f = 0; f < sources_.size(); ++f) {
+      if (sources_[f].grid || (at->field != no_field && at->field != f)) continue;
+      const double extinction = at->field == f ? 1 : walk.extinction_of(f, values[f].value);
+      if (extinction == 0) continue;
+      const Largest largest = find_largest(particles_, sources_[f], place);
+      if (largest.kernel == 0 || !(extinction * largest.kernel / largest.sum > best)) continue;
+      best = extinction * largest.kernel / largest.sum;
+      particle = largest.particle;
+    }
   }
-  if (nearest.measure == nowhere) return {};
-  pick.particle = nearest.particle;
-  const std::vector<Point3d> place{pick.place};
-  for (const FieldSample& value :
-       probe(kernels, renderer.grids(), place, std::numeric_limits<double>::quiet_NaN())) {
-    pick.values.push_back(value.value);
+  if (particle == no_particle) return std::nullopt;
+  Pick pick = describe(particles_, particle);
+  pick.place = place;
+  pick.distance = length(place - ray.origin);
+  for (std::size_t f = 0; f < sources_.size(); ++f) {
+    pick.values.emplace_back(sources_[f].name, values[f].value);
   }
   return pick;
 }

@@ -198,11 +198,13 @@ bool draws_surfaces_only(const ResolvedScene& scene) {
          std::all_of(scene.transfer_functions.begin(), scene.transfer_functions.end(), invisible);
 }
 
-bool is_cancelled(const RenderOptions& options) {
-  return options.cancel != nullptr && options.cancel->load(std::memory_order_relaxed);
+void throw_if_cancelled(const RenderOptions& options) {
+  if (options.cancel != nullptr && options.cancel->load(std::memory_order_relaxed)) {
+    throw Cancelled();
+  }
 }
 
-/// Calls work(tile) for all tiles of the image, in parallel.
+/// Calls work(tile) for all tiles of the image, in parallel, unless the frame is cancelled.
 template <class Work>
 void for_tiles(const ResolvedScene& scene, const RenderOptions& options, int tile_size,
                const Work& work) {
@@ -219,7 +221,7 @@ void for_tiles(const ResolvedScene& scene, const RenderOptions& options, int til
   tbb::task_arena arena(threads);
   arena.execute([&] {
     tbb::parallel_for(0, columns * rows, [&](int i) {
-      if (is_cancelled(options)) return;
+      throw_if_cancelled(options);
       const int x = i % columns * tile_size, y = i / columns * tile_size;
       work(Tile{x, y, std::min(tile_size, width - x), std::min(tile_size, height - y)});
       const std::lock_guard lock(mutex);
@@ -289,6 +291,11 @@ TreeUpdate Renderer::set_particles(const ParticleSet& particles,
   return update;
 }
 
+void Renderer::check(const ResolvedScene& scene) const {
+  camera_axes(scene.camera);
+  if (!kernels_->fields.empty()) check_step(volume_box(*kernels_, grids_), scene);
+}
+
 void Renderer::prepare(Engine engine) {
   if (engine == Engine::cells && !cells_ && kernels_->size() != 0) {
     cells_ = build_cell_grid(*kernels_);
@@ -323,7 +330,7 @@ Framebuffer Renderer::render(const ResolvedScene& scene, const RenderOptions& op
   return image;
 }
 
-bool Renderer::render(const ResolvedScene& scene, const RenderOptions& options, Framebuffer& image,
+void Renderer::render(const ResolvedScene& scene, const RenderOptions& options, Framebuffer& image,
                       RenderStatistics* statistics) const {
   assert(scene.transfer_functions.size() == kernels_->fields.size());
   assert(scene.step_size > 0);
@@ -343,6 +350,7 @@ bool Renderer::render(const ResolvedScene& scene, const RenderOptions& options, 
     field_colors = color_by_fields(surface_->colors, field_values_, scene.transfer_functions);
   }
   std::optional<SurfaceFrame> solids;
+  throw_if_cancelled(options);
   FrameSurfaces surfaces;
   if (surface_) {
     solids = frame_of(cut_surface ? *cut_surface : *surface_, scene);
@@ -399,7 +407,6 @@ bool Renderer::render(const ResolvedScene& scene, const RenderOptions& options, 
                    target,
                    all.evaluations_inside};
   }
-  return !is_cancelled(options);
 }
 
 }  // namespace motes

@@ -32,7 +32,8 @@ struct RenderOptions {
   /// to 32, in whole eights.
   std::optional<int> samples_per_pass = std::nullopt;
   Progress* progress = nullptr;
-  /// Once it is true, render() returns soon; null: never.
+  /// When it becomes true, render() soon throws Cancelled; the image is then undefined. May be
+  /// null.
   const std::atomic<bool>* cancel = nullptr;
   /// Surfaces in the way of rays through fields, in place of the renderer's own geometry; empty:
   /// that.
@@ -71,8 +72,7 @@ class Renderer {
   Framebuffer render(const ResolvedScene& scene, const RenderOptions& options,
                      RenderStatistics* statistics = nullptr) const;
   /// The same into `image`, whose memory is used again where its size is right: frame after frame.
-  /// False if it was cancelled: the image is of no use then.
-  bool render(const ResolvedScene& scene, const RenderOptions& options, Framebuffer& image,
+  void render(const ResolvedScene& scene, const RenderOptions& options, Framebuffer& image,
               RenderStatistics* statistics = nullptr) const;
 
   /// Takes the next frame of moving particles, with the kernels of `fields`. Refits the tree as
@@ -81,6 +81,9 @@ class Renderer {
   /// bytes a particle. Needs none of the arguments afterwards. Throws what the constructor throws.
   TreeUpdate set_particles(const ParticleSet& particles, const std::vector<FieldSource>& fields,
                            const GeometrySource& geometry = {});
+
+  /// Throws what render() throws for a scene that it cannot render.
+  void check(const ResolvedScene& scene) const;
 
   /// Makes ready what `engine` needs besides the tree. render() does so itself, for its frame
   /// alone.
@@ -91,7 +94,7 @@ class Renderer {
 
   const KernelSet& kernels() const { return *kernels_; }
   const GridFields& grids() const { return grids_; }
-  /// Balls and sticks; null: there are none.
+  /// Balls and sticks over kernels(), or null.
   const Surface* surface() const { return surface_ ? &*surface_ : nullptr; }
   /// Bytes of balls and sticks besides those of kernels().
   std::size_t surface_bytes() const {

@@ -32,6 +32,16 @@ std::vector<Color> colors_of(const Isosurface& isosurface, const ParticleSet& pa
 
 }  // namespace
 
+std::vector<VisibleSphere> spheres_of_view(const ParticleSet& particles,
+                                           const std::vector<FieldSource>& sources,
+                                           const GeometrySource& geometry) {
+  std::vector<VisibleSphere> spheres = visible_spheres(particles, sources, geometry);
+  if (!spheres.empty()) return spheres;
+  Bounds3d box = particles.bounds();
+  if (box.empty()) box = {{-1, -1, -1}, {1, 1, 1}};
+  return {{box.min, 0}, {box.max, 0}};
+}
+
 ResolvedScene resolve(const Scene& scene, const ParticleSet& particles,
                       const std::vector<Field>& fields, const std::vector<FieldSource>& sources,
                       const GeometrySource& geometry, const KernelSet& kernels, Progress* progress,
@@ -39,11 +49,7 @@ ResolvedScene resolve(const Scene& scene, const ParticleSet& particles,
   ResolvedScene resolved;
   resolved.render = scene.render;
   const double aspect = static_cast<double>(scene.render.width) / scene.render.height;
-  // Nothing has to be looked at for a camera that is given.
-  const bool is_given = scene.eye && scene.target && scene.up;
-  resolved.camera = fit_camera(
-      scene, is_given ? std::vector<VisibleSphere>() : visible_spheres(particles, sources, geometry),
-      aspect);
+  resolved.camera = fit_camera(scene, spheres_of_view(particles, sources, geometry), aspect);
   // Without fields nothing is sampled.
   resolved.step_size = 1;
   if (scene.render.step_size) {

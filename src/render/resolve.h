@@ -6,14 +6,21 @@
 #include "core/report.h"
 #include "field/kernel_set.h"
 #include "render/grid_fields.h"
+#include "scene/fit.h"
 #include "scene/scene.h"
 
 namespace motes {
 
+/// What cameras are fitted to: all that is seen (visible_spheres()), or, where that is nothing, the
+/// ends of the particles' box.
+std::vector<VisibleSphere> spheres_of_view(const ParticleSet& particles,
+                                           const std::vector<FieldSource>& sources,
+                                           const GeometrySource& geometry);
+
 /// Fills in what `scene` leaves open: camera from the fields and `geometry`, step size from the
 /// fields, transfer functions from what the view shows of them. `fields` are those that the scene
-/// comes to (expand_fields()), `sources`, `kernels` and `grids` theirs. Throws Error for a camera
-/// or a transfer function that cannot be.
+/// comes to and that are visible, `sources`, `kernels` and `grids` theirs. Throws Error for a
+/// camera or a transfer function that cannot be.
 ResolvedScene resolve(const Scene& scene, const ParticleSet& particles,
                       const std::vector<Field>& fields, const std::vector<FieldSource>& sources,
                       const GeometrySource& geometry, const KernelSet& kernels,

@@ -8,23 +8,10 @@
 #include "core/vec.h"
 #include "field/probe.h"
 #include "render/clip.h"
+#include "render/view_ray.h"
 
 namespace motes {
 namespace {
-
-/// A ray: its points are origin + z * direction.
-struct Ray {
-  Point3d origin;
-  Vector3d direction;
-};
-
-/// The ray through the point (s, t) of the image, both in [0, 1], from the left and from the top.
-Ray view_ray(const Camera& camera, const CameraAxes& axes, double aspect, double s, double t) {
-  const double half = half_height(camera);
-  const Vector3d across = (2 * s - 1) * half * aspect * axes.x + (1 - 2 * t) * half * axes.y;
-  if (camera.orthographic_height) return {camera.eye + across, axes.forward};
-  return {camera.eye, across + axes.forward};
-}
 
 /// The points of the view at which the fields are looked at, and the rays that they lie on.
 struct ViewPoints {
@@ -44,13 +31,13 @@ ViewPoints spread_points(const Bounds3d& box, const Camera& camera, double aspec
   for (int i = 0; i < rays_an_axis * rays_an_axis; ++i) {
     const int column = i % rays_an_axis, row = i / rays_an_axis;
     const double s = (column + jitter()) / rays_an_axis, t = (row + jitter()) / rays_an_axis;
-    const Ray ray = view_ray(camera, axes, aspect, s, t);
+    const ViewRay ray = view_ray(camera, axes, aspect, s, t);
     const DepthRange range = clip(box, ray.origin, ray.direction);
     if (!(range.near < range.far)) continue;
     const double spacing = (range.far - range.near) / samples_per_ray;
     view.rays.spacing.push_back(spacing * length(ray.direction));
     for (int k = 0; k < samples_per_ray; ++k) {
-      view.points.push_back(ray.origin + (range.near + (k + jitter()) * spacing) * ray.direction);
+      view.points.push_back(ray.at(range.near + (k + jitter()) * spacing));
     }
     view.rays.ray_begin.push_back(view.points.size());
   }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 #include <set>
 
@@ -188,9 +189,7 @@ std::string unknown_species_in(const Selection& select, const ParticleSet& parti
 FieldSource select_source(const ParticleSet& particles, const Field& field, const Kernel& kernel) {
   FieldSource source;
   source.name = field.name;
-  source.kernel.support_factor = field.support_factor.value_or(kernel.support_factor);
-  source.kernel.kernel_scale = field.kernel_scale.value_or(kernel.kernel_scale);
-  source.kernel.shape = field.kernel_shape.value_or(kernel.shape);
+  source.kernel = kernel_of(field, kernel);
   source.index = select_particles(particles, field.select);
   if (source.index.empty()) {
     throw Error(fmt::format("field '{}' selects none of the {} particles{}", printable(field.name),
@@ -300,6 +299,19 @@ std::vector<FieldSource> make_field_sources(const ParticleSet& particles,
     complete_source(particles, fields[f], default_radius, sources[f], warnings);
   }
   return sources;
+}
+
+Kernel kernel_of(const Field& field, const Kernel& kernel) {
+  return {field.support_factor.value_or(kernel.support_factor),
+          field.kernel_scale.value_or(kernel.kernel_scale),
+          field.kernel_shape.value_or(kernel.shape)};
+}
+
+std::vector<Field> visible_fields(const std::vector<Field>& fields) {
+  std::vector<Field> visible;
+  std::copy_if(fields.begin(), fields.end(), std::back_inserter(visible),
+               [](const Field& field) { return field.visible; });
+  return visible;
 }
 
 void color_by_species(Scene& scene, const ParticleSet& particles) {

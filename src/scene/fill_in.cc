@@ -42,7 +42,7 @@ decltype(Field::transfer_function) written_form(const decltype(Field::transfer_f
 
 Scene fill_in(const Scene& scene, const std::vector<Field>& fields,
               const std::vector<FieldSource>& sources, const ResolvedScene& resolved) {
-  assert(fields.size() == sources.size() && fields.size() == resolved.transfer_functions.size());
+  assert(sources.size() == resolved.transfer_functions.size());
   Scene filled = scene;
   const Camera& camera = resolved.camera;
   filled.eye = camera.eye;
@@ -52,12 +52,14 @@ Scene fill_in(const Scene& scene, const std::vector<Field>& fields,
   if (!camera.orthographic_height) filled.fov_degrees = camera.fov_degrees;
   filled.render.step_size = resolved.step_size;
   filled.fields = fields;
-  for (std::size_t f = 0; f < fields.size(); ++f) {
-    Field& field = filled.fields[f];
-    const FieldSource& source = sources[f];
+  std::size_t number = 0;  // among the visible ones
+  for (Field& field : filled.fields) {
+    if (!field.visible) continue;
+    assert(number < sources.size());
+    const FieldSource& source = sources[number];
+    const TransferFunction& function = resolved.transfer_functions[number++];
     if (field.draws_volume()) {
-      field.transfer_function =
-          written_form(field.transfer_function, resolved.transfer_functions[f]);
+      field.transfer_function = written_form(field.transfer_function, function);
     }
     if (field.grid) continue;
     if (!field.radius) field.radius = plain_number(source.radius);

@@ -9,8 +9,8 @@ namespace motes {
 
 /// `scene` with what it was resolved to in place of what it left open, so that it gives the same
 /// picture: the camera, the step size, `fields` (expand_fields()) with their transfer functions,
-/// weights, and radii where all are one number. `sources` and the transfer functions of `resolved`
-/// are one a field.
+/// weights, and radii where all are one number; of fields that are not visible nothing is filled
+/// in. `sources` and the transfer functions of `resolved` are one a visible field.
 Scene fill_in(const Scene& scene, const std::vector<Field>& fields,
               const std::vector<FieldSource>& sources, const ResolvedScene& resolved);
 

@@ -63,7 +63,8 @@ std::string_view name_of(Reconstruction interpolation);
 /// `select`, `radius`, `weight`, `normalise` and kernels.
 struct Field {
   std::string name;
-  bool visible = true;  ///< else the field is only kept
+  /// False: neither drawn nor gathered, but there to be shown again.
+  bool visible = true;
   std::optional<FieldGrid> grid;
   Selection select;
   std::optional<NumberOrProperty> radius;  ///< nullopt: particles' default radii
@@ -199,6 +200,12 @@ void color_by_species(Scene& scene, const ParticleSet& particles);
 /// properties or grids that the data do not have.
 std::vector<Field> expand_fields(const Scene& scene, const ParticleSet& particles,
                                  const std::vector<LoadedGrid>& grids = {});
+
+/// The kernel of a field of particles; `kernel` is the scene's.
+Kernel kernel_of(const Field& field, const Kernel& kernel);
+
+/// Those that are drawn.
+std::vector<Field> visible_fields(const std::vector<Field>& fields);
 
 /// The particles, radii and weights of each field. `kernel` is the scene's. Defaults: radius is
 /// such that the kernel's standard deviation is the particles' own size (has_sizes()), else the

@@ -125,18 +125,24 @@ TransferFunction named_transfer_function(std::string_view name, double low, doub
   return function;
 }
 
-Color color_at(const TransferFunction& function, double value) {
+TransferFunction::Point point_at(const TransferFunction& function, double value) {
   const auto& points = function.points;
   const auto above = std::find_if(points.begin(), points.end(),
                                   [&](const auto& point) { return point.value > value; });
-  if (!(value > points.front().value)) return points.front().color;
-  if (above == points.end()) return points.back().color;
+  if (!(value > points.front().value)) return points.front();
+  if (above == points.end()) return points.back();
   const auto place = [&](double v) { return function.log_scale ? std::log10(v) : v; };
   const auto& below = *(above - 1);
-  const auto t = static_cast<float>((place(value) - place(below.value)) /
-                                    (place(above->value) - place(below.value)));
-  return {std::lerp(below.color.r, above->color.r, t), std::lerp(below.color.g, above->color.g, t),
-          std::lerp(below.color.b, above->color.b, t)};
+  const double s = (place(value) - place(below.value)) / (place(above->value) - place(below.value));
+  const auto t = static_cast<float>(s);
+  return {value,
+          {std::lerp(below.color.r, above->color.r, t), std::lerp(below.color.g, above->color.g, t),
+           std::lerp(below.color.b, above->color.b, t)},
+          std::lerp(below.extinction, above->extinction, s)};
+}
+
+Color color_at(const TransferFunction& function, double value) {
+  return point_at(function, value).color;
 }
 
 }  // namespace motes

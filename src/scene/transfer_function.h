@@ -26,7 +26,9 @@ struct TransferFunction {
   bool operator==(const TransferFunction&) const = default;
 };
 
-/// The colour at a value of the field; not a number: that of the first point.
+/// What the function has at a value of the field; not a number: the first point.
+TransferFunction::Point point_at(const TransferFunction& function, double value);
+/// Its colour.
 Color color_at(const TransferFunction& function, double value);
 
 /// Names of the built-in colour maps: viridis, magma, inferno, plasma, heat, grey.

@@ -469,5 +469,16 @@ TEST_F(CommandLine, StatisticsNameTheEngine) {
   EXPECT_EQ(nlohmann::json::parse(workspace_.read("s.json"))["engine"], "coherent");
 }
 
+TEST_F(CommandLine, RendersASceneFromStandardInput) {
+  workspace_.write("scene.json",
+                   R"({"version": 1, "data": {"path": "a.xyz"}, "render": {"size": [33, 33]}})");
+  succeed("render scene.json -o file.npy");
+  succeed("render - -o piped.npy < scene.json");
+  EXPECT_EQ(pixels("piped.npy"), pixels("file.npy"));
+  workspace_.write("bad.json", R"({"version": 1, "data": {"path": "none.xyz"}})");
+  EXPECT_THAT(failure("render - -o piped.npy < bad.json", 1),
+              testing::HasSubstr("-: data.path: none.xyz: there is no such file"));
+}
+
 }  // namespace
 }  // namespace motes

@@ -475,5 +475,16 @@ TEST(EngineNames, AreReadBack) {
   }
 }
 
+TEST(SceneJson, FieldsThatAreNotVisibleSaySo) {
+  Scene scene = parse_scene(
+      R"({"version": 1, "data": {"path": "a.xyz"}, "fields": [{"visible": false}, {"visible": true}]})",
+      "scene.json");
+  EXPECT_FALSE(scene.fields[0].visible);
+  EXPECT_TRUE(scene.fields[1].visible);
+  const std::string text = scene_to_json(scene, "");
+  EXPECT_EQ(parse_scene(text, "scene.json"), scene);
+  EXPECT_EQ(text.find("visible"), text.rfind("visible"));  // written only where it is false
+}
+
 }  // namespace
 }  // namespace motes

@@ -1,0 +1,48 @@
+// Puts the library's steps in their order.
+#include "document/prepare.h"
+
+#include <utility>
+
+#include "render/resolve.h"
+#include "scene/fill_in.h"
+
+namespace motes {
+
+GatheredScene gather_scene(const Scene& scene, const std::vector<Field>& fields,
+                           const ParticleSet& particles, const std::vector<LoadedGrid>& grids,
+                           Progress* progress, Warnings& warnings) {
+  GatheredScene gathered;
+  gathered.sources = make_field_sources(particles, visible_fields(fields), scene.kernel, warnings,
+                                        progress, grids);
+  gathered.geometry = make_geometry_source(particles, scene.geometry, warnings);
+  return gathered;
+}
+
+DataExtent data_extent(const ParticleSet& particles, const Renderer& renderer,
+                       const std::vector<FieldSource>& sources) {
+  DataExtent extent{particles.bounds(), particles.length_unit};
+  for (const GridField& grid : renderer.grids()) {
+    extent.bounds.add(grid.sampler->bounds());
+    if (particles.size() == 0) extent.length_unit = sources[grid.field].grid->length_unit;
+  }
+  return extent;
+}
+
+PreparedScene prepare_scene(Scene scene, const ParticleSet& particles,
+                            const std::vector<LoadedGrid>& grids, Progress* progress,
+                            Warnings& warnings) {
+  color_by_species(scene, particles);
+  const auto fields = expand_fields(scene, particles, grids);
+  const auto [sources, geometry] =
+      gather_scene(scene, fields, particles, grids, progress, warnings);
+  if (progress != nullptr) progress->update("building the tree", 0);
+  Renderer renderer(particles, sources, geometry);
+  ResolvedScene resolved = resolve(scene, particles, visible_fields(fields), sources, geometry,
+                                   renderer.kernels(), progress, renderer.grids());
+  renderer.prepare(resolved.render.engine);
+  Scene filled_in = fill_in(scene, fields, sources, resolved);
+  DataExtent extent = data_extent(particles, renderer, sources);
+  return {std::move(renderer), std::move(resolved), std::move(filled_in), std::move(extent)};
+}
+
+}  // namespace motes
