@@ -1,15 +1,19 @@
 // Isosurfaces of fields, ready to be met by rays (docs/isosurface.md).
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "core/aligned.h"
 #include "core/color.h"
 #include "core/vec.h"
 #include "field/kernel_set.h"
+#include "grid/grid_sampler.h"
+#include "grid/macro_cells.h"
 #include "samples/samples.h"
 #include "scene/clip_plane.h"
 #include "surface/trace.h"
@@ -24,9 +28,24 @@ struct IsosurfaceLevel {
   std::vector<Color> colors;  ///< one, or one a species
 };
 
+/// A field that is a grid, in index coordinates (GridSampler).
+struct IsosurfaceGrid {
+  GridView view;
+  Point3d origin;             ///< of the kernels
+  Vector3d axes[3];           ///< gradients of the index coordinates, per internal length
+  double value_scale = 1;     ///< from the grid's values to internal ones
+  std::array<int, 3> dims{};  ///< of `crosses`
+  std::vector<std::uint8_t>
+      crosses;  ///< whether the field may take a level's value in a macro cell
+
+  /// Index coordinate i of a place relative to the kernels' origin, internal lengths.
+  double index_of(int i, const Point3d& p) const { return origin[i] + dot(axes[i], p - Point3d{}); }
+};
+
 struct FieldIsosurfaces {
   std::size_t field = 0;
   std::vector<IsosurfaceLevel> levels;
+  std::optional<IsosurfaceGrid> grid;  ///< what the field is, if it has no kernels
 };
 
 /// Everything that a frame's tiles share; made once a frame, then only read. Lengths are internal,
@@ -42,6 +61,9 @@ struct IsosurfaceFrame {
   double reach = 0;            ///< how far opaque levels hide the light of a place
   std::vector<ClipPlane> clip_planes;  ///< unit normals
 };
+
+/// Whether a place is cut away.
+bool is_clipped(const IsosurfaceFrame& frame, const Point3d& place);
 
 /// Where a ray crosses a level.
 struct IsosurfaceHit {
@@ -63,7 +85,7 @@ void trace_isosurfaces(const IsosurfaceFrame& frame, const RayGrid& grid,
 
 /// Leaves out the directions, unit vectors, along which an opaque level is nearer than `length` and
 /// the frame's reach to a place on a surface with that normal. Rays are sampled every 1.5 steps.
-/// Clip planes are not looked at.
+/// What clip planes cut away hides nothing.
 void prune(const IsosurfaceFrame& frame, const Point3d& place, const Vector3d& normal,
            double length, std::vector<Vector3f>& directions);
 

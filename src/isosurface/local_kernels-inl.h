@@ -40,6 +40,11 @@ struct LocalKernels {
   }
 };
 
+/// Depth of a slab's plane k relative to its reference.
+inline float plane_depth(const SlabFrame& slab, int k) {
+  return slab.first_depth + static_cast<float>(k) * slab.step;
+}
+
 /// Planes of a slab between which kernels can reach into a frustum: first and last are whole
 /// numbers that enclose what they reach, so that all of it lies between planes that they have.
 template <class D>

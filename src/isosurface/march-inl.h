@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "isosurface/isosurface.h"
-#include "isosurface/local_kernels-inl.h"
+#include "isosurface/kernels_along_rays-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace motes {
@@ -26,116 +26,47 @@ struct MarchPacket {
   RayPacket rays;
   std::uint32_t ray[max_lanes];                          ///< number in the grid
   unsigned active = 0;                                   ///< bit l: lane l goes on
+  bool started = false;                                  ///< whether value and slope are known
   alignas(64) float value[max_lanes], slope[max_lanes];  ///< on the last plane before the slab's
 };
 
-/// Marches packets through one slab of one field.
+/// Marches packets through one slab of one field. Field: KernelsAlongRays, or the same of a grid.
+template <class Field>
 class SlabMarch {
  public:
   SlabMarch(const IsosurfaceFrame& frame, const SamplingConstants& constants,
             const FieldIsosurfaces& field, std::vector<IsosurfaceHit>& out)
-      : frame_(frame), constants_(constants), field_(field), out_(out) {}
+      : frame_(frame), field_(field), out_(out), along_(frame, constants, field) {}
 
-  /// Finds the kernels that reach `rays` in `slab`; false if there are none.
+  /// False if nothing of the field can be met by `rays` in `slab`.
   bool enter(const RayBounds& rays, const Slab& slab, const View& view) {
-    slab_ = make_slab_frame(rays, slab, view);
-    gather_field(*frame_.kernels, constants_, field_.field, slab_, make_frustum(rays, slab_, view),
-                 kernels_);
-    return kernels_.size != 0;
+    return along_.enter(rays, slab, view);
   }
 
-  void run(MarchPacket& packet, const View& view, bool first) {
+  void run(MarchPacket& packet, const View& view) {
     packet_ = &packet;
-    place(packet, view);
-    sample_planes();
-    const LaneTag d;
-    if (first) {
-      hn::Store(hn::Load(d, values_[0]), d, packet.value);
-      hn::Store(hn::Load(d, slopes_[0]), d, packet.slope);
-    }
-    for (int k = 1; k < slab_.count && packet.active != 0; ++k) {
-      cross_interval(k);
+    along_.place(packet.rays, view);
+    const std::uint32_t crossable = along_.sample_planes(values_, slopes_);
+    const auto keep = [&](int k) HWY_ATTR {
+      const LaneTag d;
       hn::Store(hn::Load(d, values_[k]), d, packet.value);
       hn::Store(hn::Load(d, slopes_[k]), d, packet.slope);
+    };
+    if (!packet.started) keep(0);
+    packet.started = true;
+    for (int k = 1; k < along_.slab().count && packet.active != 0; ++k) {
+      if ((crossable >> k & 1) != 0) cross_interval(k);
+      keep(k);
     }
+    packet.started = along_.slab().count > 1 && (crossable >> (along_.slab().count - 1) & 1) != 0;
   }
 
  private:
-  /// Places the packet's rays in the slab's frame, and finds the kernels that reach them.
-  void place(const MarchPacket& packet, const View& view) {
-    const double depth = slab_.reference_depth;
-    for (int l = 0; l < num_lanes; ++l) {
-      const double x = packet.rays.direction_x[l], y = packet.rays.direction_y[l];
-      offset_x_[l] = static_cast<float>(packet.rays.origin_x[l] + depth * x - slab_.reference_x);
-      offset_y_[l] = static_cast<float>(packet.rays.origin_y[l] + depth * y - slab_.reference_y);
-      direction_x_[l] = static_cast<float>(x);
-      direction_y_[l] = static_cast<float>(y);
-    }
-    const Frustum frustum = make_frustum(bounds_of(packet.rays), slab_, view);
-    const LaneTag d;
-    reaching_.clear();
-    for (std::size_t i = 0; i < kernels_.size; i += hn::Lanes(d)) {
-      const Centers<Lanes> centers{hn::Load(d, &kernels_.x[i]), hn::Load(d, &kernels_.y[i]),
-                                   hn::Load(d, &kernels_.z[i])};
-      const Lanes support = hn::Load(d, &kernels_.support[i]);
-      const auto planes = enclosing_planes(d, slab_, frustum, centers, support);
-      unsigned bits = mask_bits(d, hn::And(planes.any, hn::Ge(support, hn::Zero(d))));
-      alignas(64) float first[max_lanes], last[max_lanes];
-      hn::Store(planes.first, d, first);
-      hn::Store(planes.last, d, last);
-      for (; bits != 0; bits &= bits - 1) {
-        const auto lane = static_cast<std::size_t>(__builtin_ctz(bits));
-        reaching_.push_back({static_cast<std::uint32_t>(i + lane), static_cast<int>(first[lane]),
-                             static_cast<int>(last[lane])});
-      }
-    }
-  }
-
-  PacketPoints points_at(Lanes z) const {
-    const LaneTag d;
-    const Lanes x = hn::Load(d, direction_x_), y = hn::Load(d, direction_y_);
-    return {hn::MulAdd(z, x, hn::Load(d, offset_x_)), hn::MulAdd(z, y, hn::Load(d, offset_y_)), z,
-            x, y};
-  }
-  float depth_of(int k) const { return slab_.first_depth + static_cast<float>(k) * slab_.step; }
-
-  void sample_planes() {
-    const LaneTag d;
-    for (int k = 0; k < slab_.count; ++k) {
-      hn::Store(hn::Zero(d), d, values_[k]);
-      hn::Store(hn::Zero(d), d, slopes_[k]);
-    }
-    with_shape(constants_, field_.field, [&](const auto& shape) HWY_ATTR {
-      for (const Reaching& kernel : reaching_) {
-        for (int k = kernel.first; k <= kernel.last; ++k) {
-          const AlongRays sums =
-              add_kernel(shape, kernels_, kernel.index, points_at(hn::Set(d, depth_of(k))),
-                         {hn::Load(d, values_[k]), hn::Load(d, slopes_[k])});
-          hn::Store(sums.value, d, values_[k]);
-          hn::Store(sums.slope, d, slopes_[k]);
-        }
-      }
-    });
-  }
-
-  /// The field at depths z between planes k - 1 and k.
-  HWY_NOINLINE AlongRays evaluate(int k, Lanes z) const {
-    const LaneTag d;
-    AlongRays sums{hn::Zero(d), hn::Zero(d)};
-    const PacketPoints points = points_at(z);
-    with_shape(constants_, field_.field, [&](const auto& shape) HWY_ATTR {
-      for (const Reaching& kernel : reaching_) {
-        if (kernel.first >= k || kernel.last < k) continue;
-        sums = add_kernel(shape, kernels_, kernel.index, points, sums);
-      }
-    });
-    return sums;
-  }
-
   /// Finds the crossings between planes k - 1 and k.
   void cross_interval(int k) {
     const LaneTag d;
-    const Lanes low = hn::Set(d, depth_of(k - 1)), high = hn::Set(d, depth_of(k));
+    const Lanes low = hn::Set(d, plane_depth(along_.slab(), k - 1)),
+                high = hn::Set(d, plane_depth(along_.slab(), k));
     unsigned ended = 0;
     for (const IsosurfaceLevel& level : field_.levels) {
       const Lanes value = hn::Set(d, level.value);
@@ -162,7 +93,7 @@ class SlabMarch {
   unsigned find_turns(const IsosurfaceLevel& level, int k, Lanes before, Lanes after,
                       Lanes& middle) const {
     const LaneTag d;
-    const Lanes zero = hn::Zero(d), step = hn::Set(d, slab_.step);
+    const Lanes zero = hn::Zero(d), step = hn::Set(d, along_.slab().step);
     // As if the field were above the level.
     const auto below = hn::Le(before, zero);
     const auto upright = [&](Lanes v) HWY_ATTR { return hn::IfThenElse(below, hn::Neg(v), v); };
@@ -177,11 +108,12 @@ class SlabMarch {
     unsigned open = mask_bits(d, may) & packet_->active;
     const unsigned in_before = ~mask_bits(d, below);
     unsigned found = 0;
-    Lanes low = hn::Set(d, depth_of(k - 1)), high = hn::Set(d, depth_of(k));
+    Lanes low = hn::Set(d, plane_depth(along_.slab(), k - 1)),
+          high = hn::Set(d, plane_depth(along_.slab(), k));
     constexpr int turns = 10;
     for (int i = 0; i < turns && open != 0; ++i) {
       const Lanes z = hn::Mul(hn::Set(d, 0.5f), hn::Add(low, high));
-      const AlongRays at = evaluate(k, z);
+      const AlongRays at = along_.evaluate(k, z);
       const auto falls = hn::Lt(upright(at.slope), zero);
       low = hn::IfThenElse(falls, z, low);
       high = hn::IfThenElse(falls, high, z);
@@ -210,7 +142,7 @@ class SlabMarch {
     constexpr int halvings = 14;
     for (int i = 0; i < halvings; ++i) {
       const Lanes z = hn::Mul(hn::Set(d, 0.5f), hn::Add(low, high));
-      const LaneMask in = hn::Gt(evaluate(k, z).value, hn::Set(d, level.value));
+      const LaneMask in = hn::Gt(along_.evaluate(k, z).value, hn::Set(d, level.value));
       const LaneMask as_low = hn::Not(hn::Xor(in, in_low));
       low = hn::IfThenElse(as_low, z, low);
       high = hn::IfThenElse(as_low, high, z);
@@ -221,40 +153,22 @@ class SlabMarch {
   /// Adds the crossings of lanes at depths z to the hits, but for those that are clipped away.
   unsigned finish(const IsosurfaceLevel& level, int k, Lanes z, unsigned lanes) {
     const LaneTag d;
-    Lanes gradient[3] = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
-    Lanes color[4] = {hn::Zero(d), hn::Zero(d), hn::Zero(d), hn::Zero(d)};
-    const PacketPoints points = points_at(z);
-    with_shape(constants_, field_.field, [&](const auto& shape) HWY_ATTR {
-      for (const Reaching& kernel : reaching_) {
-        if (kernel.first >= k || kernel.last < k) continue;
-        const std::size_t i = kernel.index;
-        const KernelAtPoints at = kernel_at(shape, kernels_, i, points);
-        const Lanes steepness = hn::Mul(hn::Set(d, kernels_.steep[i]), at.phi.steepness);
-        gradient[0] = hn::NegMulAdd(steepness, at.x, gradient[0]);
-        gradient[1] = hn::NegMulAdd(steepness, at.y, gradient[1]);
-        gradient[2] = hn::NegMulAdd(steepness, at.z, gradient[2]);
-        const Color& c =
-            level.colors[level.colors.size() == 1 ? 0 : frame_.species[kernels_.kernel[i]]];
-        const Lanes weight = hn::Abs(hn::Mul(hn::Set(d, kernels_.peak[i]), at.phi.value));
-        color[0] = hn::MulAdd(weight, hn::Set(d, c.r), color[0]);
-        color[1] = hn::MulAdd(weight, hn::Set(d, c.g), color[1]);
-        color[2] = hn::MulAdd(weight, hn::Set(d, c.b), color[2]);
-        color[3] = hn::Add(color[3], weight);
-      }
-    });
-    alignas(64) float depths[max_lanes], gradients[3][max_lanes], colors[4][max_lanes];
+    const GradientAndColor at = along_.gradient_and_color(level, k, z);
+    alignas(64) float depths[max_lanes], gradients[3][max_lanes], colors[3][max_lanes],
+        weights[max_lanes];
     hn::Store(z, d, depths);
-    for (int i = 0; i < 3; ++i) hn::Store(gradient[i], d, gradients[i]);
-    for (int i = 0; i < 4; ++i) hn::Store(color[i], d, colors[i]);
+    for (int i = 0; i < 3; ++i) hn::Store(at.gradient[i], d, gradients[i]);
+    for (int i = 0; i < 3; ++i) hn::Store(at.color[i], d, colors[i]);
+    hn::Store(at.weight, d, weights);
     unsigned kept = 0;
     for (unsigned bits = lanes; bits != 0; bits &= bits - 1) {
       const auto l = static_cast<std::size_t>(__builtin_ctz(bits));
       IsosurfaceHit hit{packet_->ray[l], level.number, level.opacity, 0, {}, level.colors[0]};
-      hit.depth = slab_.reference_depth + static_cast<double>(depths[l]);
+      hit.depth = along_.slab().reference_depth + static_cast<double>(depths[l]);
       if (is_clipped(l, hit.depth)) continue;
       kept |= 1u << l;
       hit.normal = normal_of(l, {gradients[0][l], gradients[1][l], gradients[2][l]});
-      const float weight = colors[3][l];
+      const float weight = weights[l];
       if (level.colors.size() > 1 && weight > 0) {
         hit.color = {colors[0][l] / weight, colors[1][l] / weight, colors[2][l] / weight};
       }
@@ -269,14 +183,11 @@ class SlabMarch {
   }
 
   bool is_clipped(std::size_t lane, double depth) const {
-    if (frame_.clip_planes.empty()) return false;
     const RayPacket& rays = packet_->rays;
-    const Vector3d p = (frame_.view.eye - Point3d{}) +
-                       to_world(rays.origin_x[lane] + depth * rays.direction_x[lane],
-                                rays.origin_y[lane] + depth * rays.direction_y[lane], depth);
-    return std::any_of(
-        frame_.clip_planes.begin(), frame_.clip_planes.end(),
-        [&](const ClipPlane& plane) { return dot(plane.normal, p) > plane.distance; });
+    const Point3d p =
+        frame_.view.eye + to_world(rays.origin_x[lane] + depth * rays.direction_x[lane],
+                                   rays.origin_y[lane] + depth * rays.direction_y[lane], depth);
+    return motes::is_clipped(frame_, p);
   }
 
   /// From a gradient in camera axes; against the ray where there is none.
@@ -289,22 +200,11 @@ class SlabMarch {
     return {static_cast<float>(world.x), static_cast<float>(world.y), static_cast<float>(world.z)};
   }
 
-  /// A kernel that reaches the packet between planes first and last.
-  struct Reaching {
-    std::uint32_t index;
-    int first, last;
-  };
-
   const IsosurfaceFrame& frame_;
-  const SamplingConstants& constants_;
   const FieldIsosurfaces& field_;
   std::vector<IsosurfaceHit>& out_;
-  SlabFrame slab_;
-  LocalKernels kernels_;
+  Field along_;
   MarchPacket* packet_ = nullptr;
-  std::vector<Reaching> reaching_;
-  alignas(64) float offset_x_[max_lanes], offset_y_[max_lanes];
-  alignas(64) float direction_x_[max_lanes], direction_y_[max_lanes];
   alignas(64) float values_[max_frame_planes][max_lanes], slopes_[max_frame_planes][max_lanes];
 };
 

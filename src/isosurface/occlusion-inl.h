@@ -64,13 +64,18 @@ class Surroundings {
         [&](std::size_t leaf) { add_leaf(leaf, p, length); });
   }
 
+  /// Takes directions, one a lane.
+  void look_along(const float (&directions)[3][max_lanes]) {
+    std::copy_n(&directions[0][0], 3 * max_lanes, &directions_[0][0]);
+  }
+
   /// The field at a distance from the point along the lanes' directions.
-  HWY_NOINLINE Lanes evaluate(float distance, const float (&directions)[3][max_lanes]) const {
+  HWY_NOINLINE Lanes evaluate(float distance) const {
     const LaneTag d;
     const Lanes t = hn::Set(d, distance);
-    const Lanes x = hn::Mul(t, hn::Load(d, directions[0]));
-    const Lanes y = hn::Mul(t, hn::Load(d, directions[1]));
-    const Lanes z = hn::Mul(t, hn::Load(d, directions[2]));
+    const Lanes x = hn::Mul(t, hn::Load(d, directions_[0]));
+    const Lanes y = hn::Mul(t, hn::Load(d, directions_[1]));
+    const Lanes z = hn::Mul(t, hn::Load(d, directions_[2]));
     Lanes sum = hn::Zero(d);
     with_shape(constants_, f_, [&](const auto& shape) HWY_ATTR {
       for (std::size_t i = 0; i < local_.size; ++i) {
@@ -116,20 +121,21 @@ class Surroundings {
   std::size_t f_;
   float distance_scale_ = 1;
   LocalKernels local_;
+  alignas(64) float directions_[3][max_lanes];
   std::vector<float> distance_;  ///< of each local kernel's centre
 };
 
 /// Leaves out the directions along which a level comes within `length`, for the levels of one field
 /// that are opaque.
-void prune_by_field(const IsosurfaceFrame& frame, const SamplingConstants& constants,
+template <class Field>
+void prune_by_field(const IsosurfaceFrame& frame, Field& surroundings,
                     const FieldIsosurfaces& field, const Point3d& start, float length,
                     std::vector<Vector3f>& directions) {
   const LaneTag d;
-  Surroundings surroundings(*frame.kernels, constants, field.field);
-  surroundings.enter(start, length);
   constexpr double steps_of_samples = 1.5;  // from one to the next
-  const double spacing = steps_of_samples * frame.planes.step;
-  const int count = std::max(1, static_cast<int>(std::ceil(static_cast<double>(length) / spacing)));
+  const double most = steps_of_samples * frame.planes.step;
+  const int count = std::max(1, static_cast<int>(std::ceil(static_cast<double>(length) / most)));
+  const float spacing = length / static_cast<float>(count);
   std::size_t size = 0;
   for (std::size_t first = 0; first < directions.size(); first += hn::Lanes(d)) {
     const std::size_t there = std::min(directions.size() - first, hn::Lanes(d));
@@ -137,16 +143,29 @@ void prune_by_field(const IsosurfaceFrame& frame, const SamplingConstants& const
     for (std::size_t l = 0; l < there; ++l) {
       for (int i = 0; i < 3; ++i) lanes[i][l] = directions[first + l][i];
     }
-    const Lanes at_start = surroundings.evaluate(0, lanes);
+    surroundings.look_along(lanes);
+    Lanes before = surroundings.evaluate(0);
     unsigned open = (1u << there) - 1;
     for (int i = 1; i <= count && open != 0; ++i) {
-      const Lanes value =
-          surroundings.evaluate(length * static_cast<float>(i) / static_cast<float>(count), lanes);
+      const Lanes value = surroundings.evaluate(spacing * static_cast<float>(i));
       for (const IsosurfaceLevel& level : field.levels) {
         if (level.opacity < 1) continue;
         const Lanes v = hn::Set(d, level.value);
-        open &= ~(mask_bits(d, hn::Gt(value, v)) ^ mask_bits(d, hn::Gt(at_start, v)));
+        const unsigned crossed =
+            (mask_bits(d, hn::Gt(value, v)) ^ mask_bits(d, hn::Gt(before, v))) & open;
+        if (crossed == 0) continue;
+        const Lanes part = hn::Div(hn::Sub(v, before), hn::Sub(value, before));
+        alignas(64) float parts[max_lanes];
+        hn::Store(part, d, parts);
+        for (unsigned bits = crossed; bits != 0; bits &= bits - 1) {
+          const auto l = static_cast<std::size_t>(__builtin_ctz(bits));
+          const float distance = spacing * (static_cast<float>(i - 1) + parts[l]);
+          const Point3d place =
+              start + static_cast<double>(distance) * Vector3d(directions[first + l]);
+          if (!is_clipped(frame, place)) open &= ~(1u << l);
+        }
       }
+      before = value;
     }
     for (std::size_t l = 0; l < there; ++l) {
       if ((open >> l & 1) != 0) directions[size++] = directions[first + l];

@@ -6,6 +6,8 @@
 // Included again for each instruction set.
 #include <hwy/highway.h>
 
+#include "isosurface/grid_along_rays-inl.h"
+#include "isosurface/kernels_along_rays-inl.h"
 #include "isosurface/march-inl.h"
 #include "isosurface/occlusion-inl.h"
 
@@ -63,13 +65,14 @@ std::vector<MarchPacket> make_packets(const IsosurfaceFrame& frame, const RayGri
   return packets;
 }
 
+template <class Field>
 void march_tile(const IsosurfaceFrame& frame, const SamplingConstants& constants,
                 const FieldIsosurfaces& field, const RayGrid& grid, int x, int y,
                 std::vector<IsosurfaceHit>& out) {
   const View view{frame.view.axes, frame.view.eye, frame.planes};
   const RayBounds bounds = bounds_of_tile(frame, grid, x, y);
   std::vector<MarchPacket> packets = make_packets(frame, grid, x, y);
-  SlabMarch march(frame, constants, field, out);
+  SlabMarch<Field> march(frame, constants, field, out);
   // Slabs share a plane, so that no interval between planes is left out.
   for (SampleIndex k = 0; k < frame.last_plane; k += max_frame_planes - 1) {
     const Slab slab{k, std::min(frame.last_plane - k + 1, max_frame_planes)};
@@ -79,11 +82,12 @@ void march_tile(const IsosurfaceFrame& frame, const SamplingConstants& constants
       if (packet.active == 0) continue;
       active = true;
       if (any) {
-        march.run(packet, view, k == 0);
+        march.run(packet, view);
         continue;
       }
       std::fill_n(packet.value, max_lanes, 0.0f);
       std::fill_n(packet.slope, max_lanes, 0.0f);
+      packet.started = Field::zero_elsewhere;
     }
     if (!active) break;
   }
@@ -96,7 +100,8 @@ void trace_grid(const IsosurfaceFrame& frame, const RayGrid& grid,
   for (const FieldIsosurfaces& field : frame.fields) {
     for (int y = tile_begin(grid.row); y < grid.row + grid.height; y += tile_side) {
       for (int x = tile_begin(grid.column); x < grid.column + grid.width; x += tile_side) {
-        march_tile(frame, constants, field, grid, x, y, out);
+        const auto march = field.grid ? &march_tile<GridAlongRays> : &march_tile<KernelsAlongRays>;
+        march(frame, constants, field, grid, x, y, out);
       }
     }
   }
@@ -113,7 +118,14 @@ void prune_directions(const IsosurfaceFrame& frame, const Point3d& place, const 
     const bool hides = std::any_of(field.levels.begin(), field.levels.end(),
                                    [](const IsosurfaceLevel& level) { return level.opacity >= 1; });
     if (hides && !directions.empty()) {
-      prune_by_field(frame, constants, field, start, reach, directions);
+      if (field.grid) {
+        GridSurroundings surroundings(*field.grid, start);
+        prune_by_field(frame, surroundings, field, start, reach, directions);
+      } else {
+        Surroundings surroundings(*frame.kernels, constants, field.field);
+        surroundings.enter(start, reach);
+        prune_by_field(frame, surroundings, field, start, reach, directions);
+      }
     }
   }
 }
@@ -148,6 +160,13 @@ void keep_visible(std::vector<IsosurfaceHit>& hits) {
 }
 
 }  // namespace
+
+bool is_clipped(const IsosurfaceFrame& frame, const Point3d& place) {
+  return std::any_of(frame.clip_planes.begin(), frame.clip_planes.end(),
+                     [&](const ClipPlane& plane) {
+                       return dot(plane.normal, place - Point3d{}) > plane.distance;
+                     });
+}
 
 void trace_isosurfaces(const IsosurfaceFrame& frame, const RayGrid& grid,
                        std::vector<IsosurfaceHit>& out) {

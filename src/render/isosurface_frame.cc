@@ -20,6 +20,30 @@ SampleIndex plane_behind(const View& view, const Bounds3d& box) {
   return static_cast<SampleIndex>(std::ceil(planes)) + 1;
 }
 
+/// `levels` are those of the grid's field.
+IsosurfaceGrid make_grid(const GridField& field, const std::vector<IsosurfaceLevel>& levels,
+                         const KernelSet& kernels) {
+  IsosurfaceGrid grid;
+  const GridSampler& sampler = *field.sampler;
+  grid.view = sampler.view();
+  grid.origin = sampler.to_index(kernels.origin);
+  for (int i = 0; i < 3; ++i) {
+    Vector3d one;
+    one[i] = 1;
+    grid.axes[i] = sampler.to_world_gradient(one) / kernels.length_scale;
+  }
+  grid.value_scale = kernels.fields[field.field].value_scale;
+  grid.dims = field.cells->dims();
+  for (const MacroCells::Range& range : field.cells->ranges()) {
+    const bool any = std::any_of(levels.begin(), levels.end(), [&](const IsosurfaceLevel& level) {
+      const double value = level.value / grid.value_scale;
+      return range.min <= value && value <= range.max;
+    });
+    grid.crosses.push_back(any ? 1 : 0);
+  }
+  return grid;
+}
+
 }  // namespace
 
 std::vector<std::uint16_t> species_of_kernels(const ParticleSet& particles,
@@ -36,7 +60,8 @@ std::vector<std::uint16_t> species_of_kernels(const ParticleSet& particles,
 }
 
 ShadedIsosurfaces make_isosurfaces(const ResolvedScene& scene, const FrameContext& context,
-                                   const ImagePlane& plane, const SurfaceShading& shading,
+                                   const GridFields& grids, const ImagePlane& plane,
+                                   const SurfaceShading& shading,
                                    const std::vector<std::uint16_t>& species) {
   ShadedIsosurfaces isosurfaces;
   IsosurfaceFrame& frame = isosurfaces.frame;
@@ -57,11 +82,17 @@ ShadedIsosurfaces make_isosurfaces(const ResolvedScene& scene, const FrameContex
     const ResolvedIsosurface& isosurface = scene.isosurfaces[i];
     auto at = std::find_if(frame.fields.begin(), frame.fields.end(),
                            [&](const auto& field) { return field.field == isosurface.field; });
-    if (at == frame.fields.end()) at = frame.fields.insert(at, {isosurface.field, {}});
+    if (at == frame.fields.end()) at = frame.fields.insert(at, {isosurface.field, {}, {}});
     const double scale = context.kernels->fields[isosurface.field].value_scale;
     at->levels.push_back({static_cast<std::uint32_t>(i),
                           static_cast<float>(isosurface.value * scale), isosurface.opacity,
                           isosurface.colors});
+  }
+  for (FieldIsosurfaces& field : frame.fields) {
+    const auto grid = std::find_if(grids.begin(), grids.end(), [&](const GridField& candidate) {
+      return candidate.field == field.field;
+    });
+    if (grid != grids.end()) field.grid = make_grid(*grid, field.levels, *context.kernels);
   }
   return isosurfaces;
 }

@@ -18,10 +18,11 @@ std::vector<std::uint16_t> species_of_kernels(const ParticleSet& particles,
                                               const std::vector<FieldSource>& sources,
                                               const KernelOrder& order);
 
-/// The isosurfaces of `scene` in the frame's view; `species` is that of the kernels and outlives
-/// what is returned.
+/// The isosurfaces of `scene` in the frame's view; `species` is that of the kernels. This and
+/// `grids` outlive what is returned.
 ShadedIsosurfaces make_isosurfaces(const ResolvedScene& scene, const FrameContext& context,
-                                   const ImagePlane& plane, const SurfaceShading& shading,
+                                   const GridFields& grids, const ImagePlane& plane,
+                                   const SurfaceShading& shading,
                                    const std::vector<std::uint16_t>& species);
 
 }  // namespace motes

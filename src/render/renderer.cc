@@ -372,7 +372,7 @@ void Renderer::render(const ResolvedScene& scene, const RenderOptions& options, 
     FrameContext context = make_context(*kernels_, grids_, scene, options);
     std::optional<ShadedIsosurfaces> isosurfaces;
     if (!scene.isosurfaces.empty()) {
-      isosurfaces = make_isosurfaces(scene, context, image_plane(*kernels_, scene),
+      isosurfaces = make_isosurfaces(scene, context, grids_, image_plane(*kernels_, scene),
                                      surface_shading(*kernels_, scene), species_);
       surfaces.isosurfaces = &*isosurfaces;
       isosurfaces->light.prune = [&frame = isosurfaces->frame](

@@ -189,7 +189,7 @@ Field read_field(const Value& value, const std::filesystem::path& directory) {
   Field field;
   value.with("grid", [&](const Value& grid) {
     field.grid = read_grid(grid, directory);
-    for (const char* key : {"select", "radius", "weight", "normalise", "kernel", "isosurfaces"}) {
+    for (const char* key : {"select", "radius", "weight", "normalise", "kernel"}) {
       value.with(key, [](const Value& v) {
         v.fail("is for fields of particles; expected none, as the field is a grid");
       });
@@ -209,7 +209,16 @@ Field read_field(const Value& value, const std::filesystem::path& directory) {
   });
   value.with("transfer_function",
              [&](const Value& v) { field.transfer_function = read_transfer_function(v); });
-  value.with("isosurfaces", [&](const Value& v) { field.isosurfaces = read_isosurfaces(v); });
+  value.with("isosurfaces", [&](const Value& v) {
+    field.isosurfaces = read_isosurfaces(v);
+    const auto is_by_particles = [](const Isosurface& isosurface) {
+      return isosurface.color && std::holds_alternative<ColorBy>(*isosurface.color);
+    };
+    if (field.grid &&
+        std::any_of(field.isosurfaces.begin(), field.isosurfaces.end(), is_by_particles)) {
+      v.fail("has a colour by particles; expected a colour of its own, as the field is a grid");
+    }
+  });
   return field;
 }
 

@@ -1,0 +1,276 @@
+// Crossings of rays and isosurfaces of grids against dense marching and bisection of the
+// reference's field in double precision.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "isosurface/isosurface.h"
+#include "reference/grid.h"
+#include "render/grid_fields.h"
+#include "render/isosurface_frame.h"
+#include "render/render_tile.h"
+#include "scene/scene.h"
+
+namespace motes {
+namespace {
+
+/// A small skew grid of smooth random waves, and levels of both signs.
+struct Case {
+  std::shared_ptr<const Grid> grid;
+  Reconstruction reconstruction{};
+  GridFields fields;
+  KernelSet kernels;
+  IsosurfaceFrame frame;
+  RayGrid rays;
+  std::string description;
+};
+
+std::shared_ptr<const Grid> make_grid(std::mt19937& random, bool periodic) {
+  const auto uniform = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  Grid grid;
+  grid.name = "test";
+  grid.dims = {12, 9, 14};
+  grid.origin = {uniform(-20, 20), uniform(-20, 20), uniform(-20, 20)};
+  grid.steps = {Vector3d{0.5, 0.1, 0}, {-0.2, 0.7, 0.1}, {0.2, 0, -0.6}};
+  grid.periodic = periodic;
+  Vector3d waves[3];
+  double phases[3];
+  for (int w = 0; w < 3; ++w) {
+    waves[w] = {uniform(-1.2, 1.2), uniform(-1.2, 1.2), uniform(-1.2, 1.2)};
+    phases[w] = uniform(0, 6);
+  }
+  for (std::size_t k = 0; k < grid.dims[2]; ++k) {
+    for (std::size_t j = 0; j < grid.dims[1]; ++j) {
+      for (std::size_t i = 0; i < grid.dims[0]; ++i) {
+        const Vector3d p{double(i), double(j), double(k)};
+        double sum = 0;
+        for (int w = 0; w < 3; ++w) sum += std::sin(dot(waves[w], p) + phases[w]);
+        grid.values.push_back(static_cast<float>(sum));
+      }
+    }
+  }
+  return std::make_shared<const Grid>(std::move(grid));
+}
+
+void make_case(int seed, Case& c) {
+  std::mt19937 random(static_cast<unsigned>(seed));
+  const auto uniform = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  c.reconstruction = std::array{Reconstruction::trilinear, Reconstruction::tricubic,
+                                Reconstruction::tricubic_smoothing}[seed % 3];
+  c.grid = make_grid(random, seed % 2 == 1);
+  FieldSource source;
+  source.name = "test";
+  source.grid = c.grid;
+  source.interpolation = c.reconstruction;
+  c.kernels = build_kernel_set({}, {source});
+  c.fields = make_grid_fields({source});
+  set_units(c.fields, c.kernels);
+  const double scale = c.kernels.length_scale;
+  const Point3d center = volume_box(c.kernels, c.fields).center();
+  // From outside, or, now and then, from within.
+  const double away = seed % 5 == 0 ? 1 : uniform(8, 40);
+  Camera camera;
+  camera.target = center;
+  camera.eye = center + away * normalize(Vector3d{uniform(-1, 1), uniform(-1, 1), 1});
+  ResolvedScene scene;
+  FrameContext context;
+  context.kernels = &c.kernels;
+  context.orthographic = seed % 4 < 2;
+  const double step = uniform(0.1, 0.3) * scale;
+  const double first = std::floor(std::max(away - 8, 0.0) * scale / step);
+  context.view = {camera_axes(camera),
+                  Point3d{} + scale * (camera.eye - c.kernels.origin),
+                  {static_cast<std::int64_t>(first), step}};
+  const Bounds3d box = volume_box(c.kernels, c.fields);
+  context.box = {Point3d{} + scale * (box.min - c.kernels.origin),
+                 Point3d{} + scale * (box.max - c.kernels.origin)};
+  for (const double value : {uniform(0.1, 1.5), uniform(-1.5, -0.1)}) {
+    scene.isosurfaces.push_back({0, value, seed % 3 == 1 ? 1.0F : 0.4F, {{1, 1, 1}}});
+  }
+  ImagePlane plane;
+  plane.width = plane.height = 4;
+  c.frame = make_isosurfaces(scene, context, c.fields, plane, {}, {}).frame;
+  const double half = context.orthographic ? 4 * scale : 4 / std::max(away, 4.0);
+  c.rays = {-half, half, half / 10, -half / 9, -1, 2, 20, 13};
+  c.description = fmt::format("seed {}", seed);
+}
+
+struct Truth {
+  std::uint32_t level;
+  double depth;
+};
+
+class BruteForce {
+ public:
+  explicit BruteForce(const Case& c) : case_(c), field_(*c.grid, c.reconstruction) {}
+
+  Point3d point(std::uint32_t ray, double depth) const {
+    const auto width = static_cast<std::uint32_t>(case_.rays.width);
+    const double u =
+        case_.rays.u + (case_.rays.column + static_cast<int>(ray % width)) * case_.rays.du;
+    const double v =
+        case_.rays.v + (case_.rays.row + static_cast<int>(ray / width)) * case_.rays.dv;
+    const SurfaceView& view = case_.frame.view;
+    const Vector3d across = u * view.axes.x + v * view.axes.y;
+    const Point3d internal = view.orthographic ? view.eye + across + depth * view.axes.forward
+                                               : view.eye + depth * (view.axes.forward + across);
+    return case_.kernels.origin + (internal - Point3d{}) / case_.kernels.length_scale;
+  }
+  reference::GridField::Sample at(std::uint32_t ray, double depth) const {
+    return field_.at(point(ray, depth));
+  }
+
+  /// Both sides of a crossing lie in the hull.
+  std::vector<Truth> crossings(std::uint32_t ray) const {
+    constexpr int fineness = 4;
+    const double step = case_.frame.planes.step / fineness;
+    std::vector<Truth> found;
+    std::optional<double> before;
+    const double begin = case_.frame.planes.depth(0);
+    for (int i = 0; i <= case_.frame.last_plane * fineness; ++i) {
+      const double z = begin + i * step;
+      const auto sample = at(ray, z).field;
+      std::optional<double> here;
+      if (sample) here = sample->value;
+      for (const IsosurfaceLevel& level : case_.frame.fields[0].levels) {
+        const double v = value_of(level);
+        if (!before || !here || (*before > v) == (*here > v)) continue;
+        double low = z - step, high = z;
+        for (int k = 0; k < 40; ++k) {
+          const double middle = 0.5 * (low + high);
+          ((at(ray, middle).field->value > v) == (*before > v) ? low : high) = middle;
+        }
+        found.push_back({level.number, low});
+      }
+      before = here;
+    }
+    return found;
+  }
+  double value_of(const IsosurfaceLevel& level) const {
+    return level.value / case_.kernels.fields[0].value_scale;
+  }
+
+ private:
+  const Case& case_;
+  reference::GridField field_;
+};
+
+class GridIsosurfaces : public testing::TestWithParam<int> {};
+
+TEST_P(GridIsosurfaces, AreCrossedWhereTheReferencesFieldCrosses) {
+  Case c;
+  make_case(GetParam(), c);
+  const BruteForce truth(c);
+  const double step = c.frame.planes.step;
+  std::vector<std::vector<Truth>> expected;
+  for (std::uint32_t ray = 0; ray < c.rays.size(); ++ray) expected.push_back(truth.crossings(ray));
+  std::size_t crossings = 0;
+  for (const std::string& target : instruction_sets()) {
+    force_instruction_set(target);
+    std::vector<IsosurfaceHit> hits;
+    trace_isosurfaces(c.frame, c.rays, hits);
+    auto hit = hits.begin();
+    for (std::uint32_t ray = 0; ray < c.rays.size(); ++ray) {
+      const auto& truths = expected[ray];
+      const std::string where = fmt::format("{}, {}, ray {}", c.description, target, ray);
+      std::vector<bool> seen(truths.size());
+      double last = std::numeric_limits<double>::infinity();
+      for (; hit != hits.end() && hit->ray == ray; ++hit) {
+        if (hit->opacity >= 1) last = hit->depth;
+        const auto at = truth.at(ray, hit->depth);
+        // On a face: whether the crossing is within is a matter of rounding.
+        if (at.face_distance * c.kernels.length_scale < 2e-3 * step) continue;
+        ASSERT_TRUE(at.field) << where;
+        const IsosurfaceLevel& level = c.frame.fields[0].levels[hit->level];
+        const Vector3d along = truth.point(ray, hit->depth + step) - truth.point(ray, hit->depth);
+        // 1e-4 of a step from bisection; the field is right to 1e-5 of its largest values, 3 here,
+        // which index coordinates in single precision take part in.
+        constexpr double rounding = 3e-5;
+        const double tolerance = 1e-4 * std::abs(dot(at.field->gradient, along)) + rounding;
+        EXPECT_NEAR(at.field->value, truth.value_of(level), 2 * tolerance) << where;
+        Vector3d normal = normalize(at.field->gradient);
+        if (dot(normal, along) > 0) normal = -normal;
+        const double grazing = std::abs(dot(normal, normalize(along)));
+        if (grazing > 1e-3) {
+          EXPECT_LE(length(normal - Vector3d(hit->normal)), 2e-3) << where;
+        }
+        for (std::size_t i = 0; i < truths.size(); ++i) {
+          if (truths[i].level != hit->level) continue;
+          const double slack = (1e-3 + 1e-3 / std::max(grazing, 1e-2)) * step;
+          if (std::abs(truths[i].depth - hit->depth) <= slack) seen[i] = true;
+        }
+        ++crossings;
+      }
+      for (std::size_t i = 0; i < truths.size(); ++i) {
+        if (truths[i].depth > last - 1e-3 * step) continue;
+        // Pairs within a step may be missed, and so may what lies on a face.
+        bool pair = false;
+        for (std::size_t j = 0; j < truths.size(); ++j) {
+          pair = pair || (j != i && truths[j].level == truths[i].level &&
+                          std::abs(truths[j].depth - truths[i].depth) <= step);
+        }
+        const double face = truth.at(ray, truths[i].depth).face_distance;
+        if (pair || face * c.kernels.length_scale < 2e-3 * step) continue;
+        EXPECT_TRUE(seen[i]) << where << " misses " << truths[i].depth;
+      }
+    }
+    EXPECT_EQ(hit, hits.end());
+  }
+  force_instruction_set("");
+  EXPECT_GT(crossings, 200u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, GridIsosurfaces, testing::Range(0, 6));
+
+TEST(GridIsosurface, HidesTheLightOfWhatIsWithin) {
+  // A field that is the height along z above the grid's middle: level 1 is a plane.
+  auto grid = std::make_shared<Grid>();
+  grid->name = "height";
+  grid->dims = {9, 9, 9};
+  grid->origin = {-4, -4, -4};
+  grid->steps = {Vector3d{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  for (std::size_t i = 0; i < 729; ++i) {
+    grid->values.push_back(static_cast<float>(i / 81) - 4);
+  }
+  Case c;
+  c.grid = grid;
+  FieldSource source;
+  source.grid = c.grid;
+  c.kernels = build_kernel_set({}, {source});
+  c.fields = make_grid_fields({source});
+  set_units(c.fields, c.kernels);
+  const double scale = c.kernels.length_scale;
+  ResolvedScene scene;
+  scene.isosurfaces = {{0, 1, 1, {{1, 1, 1}}}};
+  FrameContext context;
+  context.kernels = &c.kernels;
+  context.view = {camera_axes(Camera{}), {}, {0, 0.5 * scale}};
+  const double side = 4 * scale;
+  context.box = {{-side, -side, -side}, {side, side, side}};
+  ImagePlane plane;
+  const auto frame = make_isosurfaces(scene, context, c.fields, plane, {}, {}).frame;
+  const Point3d start = Point3d{} + scale * (Point3d{0.2, 0.1, -0.6} - c.kernels.origin);
+  const std::vector<Vector3f> all = {{0, 0, 1}, {0, 0, -1}, {1, 0, 0}, {0.6F, 0, 0.8F}};
+  for (const std::string& target : instruction_sets()) {
+    force_instruction_set(target);
+    std::vector<Vector3f> far = all, near = all;
+    prune(frame, start, {0, 0, 1}, 3 * scale, far);
+    ASSERT_EQ(far.size(), 2u) << target;
+    EXPECT_EQ(far[0].z, -1);
+    EXPECT_EQ(far[1].x, 1);
+    prune(frame, start, {0, 0, 1}, 1.5 * scale, near);
+    EXPECT_EQ(near.size(), 4u) << target;
+  }
+  force_instruction_set("");
+}
+
+}  // namespace
+}  // namespace motes
