@@ -338,6 +338,7 @@ template <std::size_t N>
 struct SamplesAtOnce {
   std::array<const float*, N> channels;  ///< their field's channel 0
   std::array<std::size_t, N> field;
+  std::array<Lanes, N> length;  ///< of the rays that they stand for, in steps of depth
 };
 
 /// Gradients of some samples, and two over their norms; 0 where there is no normal.
@@ -401,11 +402,10 @@ struct Contributions {
 };
 
 /// Nothing is needed that takes a call: no logarithm, no opacity of thick samples, no power
-/// but is_plain_power(); and fields are everywhere.
+/// but is_plain_power().
 /// Registers need not be kept for it then.
 inline bool is_plain(const FrameShading& frame) {
   return is_plain_power(frame.constants.shininess) && frame.max_depth <= 1 &&
-         !frame.constants.has_gaps &&
          std::none_of(frame.classifiers.begin(), frame.classifiers.end(),
                       [](const Classifier& c) { return c.log_scale; });
 }
@@ -423,8 +423,6 @@ HWY_INLINE void classify(LaneTag d, const BlockShading& shading, const SamplesAt
   if constexpr (!kPlain) {
     for (std::size_t n = 0; n < N; ++n) {
       const Classifier& c = classifier_of(n);
-      const bool gaps = shading.frame.constants.has_gaps;
-      if (gaps) argument[n] = hn::IfThenZeroElse(hn::IsNaN(argument[n]), argument[n]);
       if (c.log_scale) argument[n] = logarithmic_argument(d, c, argument[n]);
     }
   }
@@ -448,15 +446,9 @@ HWY_INLINE void classify(LaneTag d, const BlockShading& shading, const SamplesAt
   };
   read(3, out.opacity);
   unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR {
-    out.opacity[n] = hn::Mul(out.opacity[n], shading.length);
+    out.opacity[n] = hn::Mul(out.opacity[n], samples.length[n]);
   });
   to_opacity<kPlain>(d, shading.frame.max_depth, out.opacity);
-  if constexpr (!kPlain) {
-    for (std::size_t n = 0; n < N && shading.frame.constants.has_gaps; ++n) {
-      const auto gap = hn::IsNaN(hn::Load(d, samples.channels[n]));
-      out.opacity[n] = hn::IfThenZeroElse(gap, out.opacity[n]);
-    }
-  }
   unroll<3>([&](std::size_t i) MOTES_INLINE HWY_ATTR { read(static_cast<int>(i), out.color[i]); });
   if constexpr (kGradients) out.light = light_samples<kPlain>(d, shading, samples);
 }

@@ -64,13 +64,27 @@ struct SeenSamples {
   }
 };
 
+/// How much there is of a field from `begin` to `end` of the step of that sample, all of it 1.
+HWY_INLINE Lanes share_of(LaneTag d, const FieldRange& range, Lanes sample, Lanes begin,
+                          Lanes end) {
+  const Lanes first = hn::Load(d, range.first), last = hn::Load(d, range.last);
+  const Lanes from =
+      hn::IfThenElse(hn::Eq(sample, first), hn::Max(begin, hn::Load(d, range.enters)), begin);
+  const Lanes to =
+      hn::IfThenElse(hn::Eq(sample, last), hn::Min(end, hn::Load(d, range.leaves)), end);
+  const LaneMask within = hn::And(hn::Le(first, sample), hn::Le(sample, last));
+  return hn::IfThenElseZero(within, hn::Max(hn::Sub(to, from), hn::Zero(d)));
+}
+
 /// Rays of a block on their way through a slab, samples counted from its begin.
 struct BlockRays {
   Lanes first, last;
-  Lanes enters, leaves;   ///< where in their steps the first sample begins and the last ends
-  LaneMask alive;         ///< have samples in the slab and have not ended
-  Lanes color[3], alpha;  ///< so far
-  Lanes highlight;        ///< light that is white, before the factor for specular light
+  Lanes enters, leaves;      ///< where in their steps the first sample begins and the last ends
+  const FieldRange* fields;  ///< as in RayState
+  int slab_first;            ///< number of the slab's first sample
+  LaneMask alive;            ///< have samples in the slab and have not ended
+  Lanes color[3], alpha;     ///< so far
+  Lanes highlight;           ///< light that is white, before the factor for specular light
   bool any_ended = false;
 
   HWY_INLINE void load_colors(LaneTag d, const RayState& rays) {
@@ -136,6 +150,28 @@ struct BlockRays {
     const LaneMask first_cut = hn::And(within(first), hn::Gt(enters, begin));
     const LaneMask last_cut = hn::And(within(last), hn::Lt(leaves, hn::Set(d, 1.0f)));
     return !hn::AllFalse(d, hn::Or(first_cut, last_cut));
+  }
+
+  /// What they have of a field from `begin` to `end` of the step of a sample, all of it 1.
+  HWY_INLINE Lanes share_of_field(LaneTag d, std::size_t field, int sample, Lanes begin,
+                                  Lanes end) const {
+    if (fields == nullptr) return hn::Sub(end, begin);
+    return share_of(d, fields[field], hn::Set(d, static_cast<float>(slab_first + sample)), begin,
+                    end);
+  }
+
+  /// Whether one of the fields is not at all of the slab.
+  HWY_INLINE bool any_field_lacks(LaneTag d, const Slab& slab, std::size_t num_fields) const {
+    const Lanes begin = hn::Set(d, static_cast<float>(slab.first));
+    const Lanes end = hn::Set(d, static_cast<float>(slab.first + slab.count));
+    LaneMask all = alive;
+    for (std::size_t f = 0; f < num_fields; ++f) {
+      const FieldRange& range = fields[f];
+      const Lanes from = hn::Add(hn::Load(d, range.first), hn::Load(d, range.enters));
+      const Lanes to = hn::Add(hn::Load(d, range.last), hn::Load(d, range.leaves));
+      all = hn::And(all, hn::And(hn::Le(from, begin), hn::Ge(to, end)));
+    }
+    return !hn::AllFalse(d, hn::AndNot(all, alive));
   }
 
   HWY_INLINE LaneMask alive_at(LaneTag d, int sample) const {

@@ -68,8 +68,9 @@ HWY_INLINE bool composite_unended(LaneTag d, const FrameShading& frame,
   return true;
 }
 
-/// Adds the samples of a slab that some ray may see.
-template <bool kGradients, bool kPlain, bool kOneField, TableKind kKind>
+/// Adds the samples of a slab that some ray may see. kEverywhere: fields have all of the slab, else
+/// what rays.fields says.
+template <bool kGradients, bool kPlain, bool kOneField, TableKind kKind, bool kEverywhere = true>
 HWY_NOINLINE void add_seen(LaneTag d, const BlockShading& shading, const SlabSamples& samples,
                            const SeenSamples& seen, BlockRays& rays) {
   const FrameShading& frame = shading.frame;
@@ -81,6 +82,12 @@ HWY_NOINLINE void add_seen(LaneTag d, const BlockShading& shading, const SlabSam
       const std::size_t i = std::min(first + n, seen.count - 1);
       some.field[n] = kOneField ? 0 : seen.field(i);
       some.channels[n] = samples.at(seen.sample(i), some.field[n]);
+      some.length[n] = shading.length;
+      if constexpr (!kEverywhere) {
+        const Lanes share =
+            rays.share_of_field(d, some.field[n], seen.sample(i), hn::Zero(d), hn::Set(d, 1.0f));
+        some.length[n] = hn::Mul(share, shading.length);
+      }
     });
     Contributions<N> out;
     classify<kGradients, kPlain, kOneField, kKind>(d, shading, some, out);
@@ -105,6 +112,9 @@ class Integrator {
              const SampleLayout& layout)
       : frame_(classifiers, constants, layout),
         add_seen_(layout.gradients ? choose<true>() : choose<false>()),
+        add_seen_in_part_(layout.gradients
+                              ? &add_seen<true, false, false, TableKind::many, false>
+                              : &add_seen<false, false, false, TableKind::many, false>),
         add_seen_with_layers_(layout.gradients ? &add_seen_with_layers<true>
                                                : &add_seen_with_layers<false>) {}
 
@@ -124,6 +134,8 @@ class Integrator {
     block.last = hn::Sub(hn::Load(d, rays.last), slab_first);
     block.alive = hn::And(hn::Le(block.first, hn::Set(d, static_cast<float>(slab.count - 1))),
                           hn::Ge(block.last, hn::Zero(d)));
+    block.fields = rays.fields;
+    block.slab_first = slab.first;
     block.load_colors(d, rays);
     const SeenSamples seen(visible, frame_.classifiers.size());
     const BlockShading shading(d, frame_, rays);
@@ -131,7 +143,10 @@ class Integrator {
     if (layers != nullptr &&
         (any_layer_before(d, *layers, static_cast<float>(slab.first + slab.count)) ||
          block.any_cut(d, slab.count))) {
-      add_seen_with_layers_(d, shading, samples, seen, slab.first, *layers, block);
+      add_seen_with_layers_(d, shading, samples, seen, *layers, block);
+    } else if (rays.fields != nullptr &&
+               block.any_field_lacks(d, slab, frame_.classifiers.size())) {
+      add_seen_in_part_(d, shading, samples, seen, block);
     } else {
       add_seen_(d, shading, samples, seen, block);
     }
@@ -207,9 +222,9 @@ class Integrator {
   }
 
   const FrameShading frame_;
-  const AddSeen add_seen_;
+  const AddSeen add_seen_, add_seen_in_part_;
   void (*const add_seen_with_layers_)(LaneTag, const BlockShading&, const SlabSamples&,
-                                      const SeenSamples&, int, BlockLayers&, BlockRays&);
+                                      const SeenSamples&, BlockLayers&, BlockRays&);
 };
 
 }  // namespace HWY_NAMESPACE

@@ -64,22 +64,22 @@ HWY_INLINE void composite_before(LaneTag d, LaneMask which, Lanes sample, Lanes 
   }
 }
 
-/// Composites `length` of the steps of a sample: all fields of it that may be seen, from seen[i]
-/// on.
+/// Composites the step of a sample from `begin` to `end`: all fields of it that may be seen, from
+/// seen[i] on.
 template <bool kGradients>
 HWY_INLINE void composite_part(LaneTag d, const BlockShading& shading, const SlabSamples& samples,
-                               const SeenSamples& seen, std::size_t i, LaneMask which, Lanes length,
-                               BlockRays& rays) {
-  BlockShading part = shading;
-  part.length = hn::Mul(part.length, length);
+                               const SeenSamples& seen, std::size_t i, LaneMask which, Lanes begin,
+                               Lanes end, BlockRays& rays) {
   constexpr std::size_t at_once = samples_at_once / 2;
   for (bool last = false; !last; ++i) {
     last = seen.ends_sample(i);
     SamplesAtOnce<at_once> one;
     one.field.fill(seen.field(i));
     one.channels.fill(samples.at(seen.sample(i), seen.field(i)));
+    one.length.fill(
+        hn::Mul(rays.share_of_field(d, seen.field(i), seen.sample(i), begin, end), shading.length));
     Contributions<at_once> out;
-    classify<kGradients, false, false, TableKind::many>(d, part, one, out);
+    classify<kGradients, false, false, TableKind::many>(d, shading, one, out);
     const Lanes weight = rays.pass(d, which, out.opacity[0]);
     rays.add<kGradients>(d, shading.frame.constants, out, 0, weight);
   }
@@ -90,9 +90,9 @@ HWY_INLINE void composite_part(LaneTag d, const BlockShading& shading, const Sla
 template <bool kGradients>
 HWY_INLINE void composite_between(LaneTag d, const BlockShading& shading,
                                   const SlabSamples& samples, const SeenSamples& seen,
-                                  std::size_t i, int slab_first, Lanes termination,
-                                  BlockLayers& layers, BlockRays& rays) {
-  const Lanes sample = hn::Set(d, static_cast<float>(slab_first + seen.sample(i)));
+                                  std::size_t i, Lanes termination, BlockLayers& layers,
+                                  BlockRays& rays) {
+  const Lanes sample = hn::Set(d, static_cast<float>(rays.slab_first + seen.sample(i)));
   LaneMask which = rays.alive_at(d, seen.sample(i));
   const Lanes number = hn::Set(d, static_cast<float>(seen.sample(i)));
   Lanes begin = hn::IfThenElseZero(hn::Eq(rays.first, number), rays.enters);
@@ -102,7 +102,7 @@ HWY_INLINE void composite_between(LaneTag d, const BlockShading& shading,
     const LaneMask meets = hn::And(which, hn::Eq(layer.sample, sample));
     const Lanes fraction = hn::IfThenElse(meets, layer.fraction, whole);
     const Lanes end = hn::Max(begin, hn::Min(fraction, whole));
-    composite_part<kGradients>(d, shading, samples, seen, i, which, hn::Sub(end, begin), rays);
+    composite_part<kGradients>(d, shading, samples, seen, i, which, begin, end, rays);
     const LaneMask go_on = hn::And(meets, hn::Le(rays.alpha, termination));
     if (hn::AllFalse(d, go_on)) return;
     which = composite_next(d, go_on, termination, layer, layers, rays);
@@ -115,16 +115,15 @@ HWY_INLINE void composite_between(LaneTag d, const BlockShading& shading,
 template <bool kGradients>
 HWY_NOINLINE void add_seen_with_layers(LaneTag d, const BlockShading& shading,
                                        const SlabSamples& samples, const SeenSamples& seen,
-                                       int slab_first, BlockLayers& layers, BlockRays& rays) {
+                                       BlockLayers& layers, BlockRays& rays) {
   const Lanes termination = hn::Set(d, shading.frame.constants.termination_opacity);
   for (std::size_t i = 0; i < seen.count; ++i) {
     if (i > 0 && !seen.ends_sample(i - 1)) continue;
     const int sample = seen.sample(i);
-    const Lanes number = hn::Set(d, static_cast<float>(slab_first + sample));
+    const Lanes number = hn::Set(d, static_cast<float>(rays.slab_first + sample));
     composite_before(d, rays.alive_at(d, sample), number, termination, layers, rays);
     if (!rays.end_opaque(d, termination, sample - 1)) return;
-    composite_between<kGradients>(d, shading, samples, seen, i, slab_first, termination, layers,
-                                  rays);
+    composite_between<kGradients>(d, shading, samples, seen, i, termination, layers, rays);
     if (!rays.end_opaque(d, termination, sample)) return;
   }
 }

@@ -14,8 +14,6 @@ struct ShadingConstants {
   float light[3] = {0, 0, -1};  ///< unit vector towards the light, camera axes; unless headlight
   /// There are clip planes: fields go on before rays' first samples and behind their last.
   bool clipped = false;
-  /// Values may be NaN: there the field is not, and shows nothing.
-  bool has_gaps = false;
   std::vector<float> min_radius;  ///< internal length, one a field
 };
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace motes::reference {
 namespace {
@@ -49,6 +48,23 @@ std::array<Vector3d, 3> inverse_steps(const Grid& grid) {
   return {cross(b, c) / volume, cross(c, a) / volume, cross(a, b) / volume};
 }
 
+/// Through the origin and through the opposite corner of the hull, which may be left-handed.
+std::vector<ClipPlane> faces_of(const Grid& grid) {
+  const double less = grid.periodic ? 0 : 1;
+  Point3d corner = grid.origin;
+  for (std::size_t a = 0; a < 3; ++a) {
+    corner = corner + (static_cast<double>(grid.dims[a]) - less) * grid.steps[a];
+  }
+  std::vector<ClipPlane> faces;
+  for (std::size_t a = 0; a < 3; ++a) {
+    Vector3d normal = normalize(cross(grid.steps[(a + 1) % 3], grid.steps[(a + 2) % 3]));
+    if (dot(normal, grid.steps[a]) < 0) normal = -normal;
+    faces.push_back({-normal, -dot(normal, grid.origin - Point3d{})});
+    faces.push_back({normal, dot(normal, corner - Point3d{})});
+  }
+  return faces;
+}
+
 }  // namespace
 
 GridField::GridField(const Grid& grid, Reconstruction reconstruction)
@@ -58,6 +74,13 @@ GridField::GridField(const Grid& grid, Reconstruction reconstruction)
   if (reconstruction == Reconstruction::tricubic) {
     for (std::size_t axis = 0; axis < 3; ++axis) solve_along(axis);
   }
+  faces_ = faces_of(grid);
+}
+
+double GridField::largest_coefficient() const {
+  double largest = 0;
+  for (const double c : c_) largest = std::max(largest, std::abs(c));
+  return largest;
 }
 
 double GridField::slope(const std::array<double, 3>& x, int axis) const {
@@ -68,27 +91,17 @@ double GridField::slope(const std::array<double, 3>& x, int axis) const {
   return (value(right) - value(left)) / 2;
 }
 
-GridField::Sample GridField::at(const Point3d& p) const {
+FieldValue GridField::at(const Point3d& p) const {
   const std::array<Vector3d, 3> inverse = inverse_steps(grid_);
   std::array<double, 3> x{};
-  // How far the point lies outside of the nearer face along each axis, or, negative, inside.
-  double farthest = -std::numeric_limits<double>::infinity();
-  for (std::size_t a = 0; a < 3; ++a) {
-    const double end = static_cast<double>(grid_.dims[a] - (grid_.periodic ? 0 : 1));
-    x[a] = dot(inverse[a], p - grid_.origin);
-    farthest = std::max(farthest, std::max(-x[a], x[a] - end) / length(inverse[a]));
-  }
-  Sample sample;
-  sample.face_distance = std::abs(farthest);
-  if (farthest > 0) return sample;
+  for (std::size_t a = 0; a < 3; ++a) x[a] = dot(inverse[a], p - grid_.origin);
   FieldValue field;
   field.value = value(x);
   field.absolute = std::abs(field.value);
   for (int a = 0; a < 3; ++a) {
     field.gradient = field.gradient + slope(x, a) * inverse[static_cast<std::size_t>(a)];
   }
-  sample.field = field;
-  return sample;
+  return field;
 }
 
 /// Coefficient of any index: repeated, or by the line through the outermost two.

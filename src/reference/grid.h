@@ -3,12 +3,12 @@
 #pragma once
 
 #include <array>
-#include <optional>
 #include <vector>
 
 #include "core/vec.h"
 #include "particles/grid.h"
 #include "reference/field.h"
+#include "scene/clip_plane.h"
 
 namespace motes::reference {
 
@@ -23,13 +23,14 @@ class GridField {
   /// interpolation of central differences is.
   double slope(const std::array<double, 3>& x, int axis) const;
 
-  /// Value and gradient at a point in world coordinates, and the distance to the hull's faces; no
-  /// value where it lies outside.
-  struct Sample {
-    std::optional<FieldValue> field;
-    double face_distance = 0;
-  };
-  Sample at(const Point3d& p) const;
+  /// Value and gradient at a point of the hull, world coordinates.
+  FieldValue at(const Point3d& p) const;
+
+  /// What lies behind none of these is the hull. Their normals have no certain length.
+  const std::vector<ClipPlane>& faces() const { return faces_; }
+
+  /// Of the coefficients, without their signs.
+  double largest_coefficient() const;
 
  private:
   double coefficient(std::array<int, 3> index, int axis = 0) const;
@@ -39,6 +40,7 @@ class GridField {
   const Grid& grid_;
   Reconstruction reconstruction_;
   std::vector<double> c_;
+  std::vector<ClipPlane> faces_;
 };
 
 }  // namespace motes::reference

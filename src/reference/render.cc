@@ -17,6 +17,8 @@ namespace {
 
 /// Relative to the distance from the eye for lengths, absolute for opacities.
 constexpr double stability_tolerance = 1e-5;
+/// Of a grid's values in single precision, relative to its largest coefficient.
+constexpr double grid_rounding = 2e-6;
 /// Where kernels have come down to so little of their peak, single precision knows no direction.
 constexpr double faintest_normal = 1e-20;
 
@@ -25,7 +27,7 @@ struct Volume {
   std::vector<std::vector<ParticleKernel>> fields;
   std::vector<std::optional<GridField>> grids;  ///< one a field, where it is one
   std::vector<double> smallest_radius;          ///< of each field's particles
-  std::vector<double> largest_peak;             ///< of each field's kernels
+  std::vector<double> largest_peak;             ///< of each field's kernels, or coefficients
   Bounds3d box;
   Vector3d forward;
   double near = 0,
@@ -56,7 +58,7 @@ Volume make_volume(const ParticleSet& particles, const ResolvedScene& scene) {
     volume.grids.emplace_back();
     if (source.grid) {
       volume.grids.back().emplace(*source.grid, source.interpolation);
-      volume.largest_peak.push_back(0);
+      volume.largest_peak.push_back(volume.grids.back()->largest_coefficient());
       volume.smallest_radius.push_back(shortest_step(*source.grid));
       continue;
     }
@@ -130,37 +132,64 @@ std::optional<Vector3d> normal_of(const FieldValue& field, double smallest_radiu
   return -field.gradient / steepness;
 }
 
-/// The fields of the volume at x.
-std::vector<Classified> classify_sample(const Volume& volume, const ResolvedScene& scene,
-                                        const std::vector<std::vector<ParticleKernel>>& fields,
-                                        const Point3d& x, const Vector3d& view, Pixel& pixel) {
+struct Depths {
+  double near, far;
+};
+
+/// A field at a sample, and the depths that it stands for.
+struct FieldSample {
+  Classified classified;
+  Depths part;
+};
+
+/// Whether the rounding of a grid's value is seen over a step, or turns its normal.
+bool is_delicate(const TransferFunction& function, const FieldValue& field, double largest,
+                 double step_length, bool lit, double shortest_edge) {
+  const double off = grid_rounding * largest;
+  const double more = classify(function, field.value + off).extinction;
+  const double less = classify(function, field.value - off).extinction;
+  if (std::abs(more - less) * step_length > 1e-3) return true;
+  // Where values are larger, what is only rounding of a gradient is no normal anyway.
+  constexpr double turn = 0.01, large = 0.2;
+  return lit && field.absolute < large * largest &&
+         length(field.gradient) * shortest_edge < off / turn;
+}
+
+/// The fields of the volume at the sample of that depth, each within its part of the ray.
+std::vector<FieldSample> classify_sample(const Volume& volume, const ResolvedScene& scene,
+                                         const std::vector<std::vector<ParticleKernel>>& fields,
+                                         const CameraRay& ray, double depth,
+                                         const std::vector<Depths>& parts, Pixel& pixel) {
+  const Vector3d view = -normalize(ray.direction);
   const Lighting& lighting = scene.render.lighting;
   const Vector3d light = lighting.direction ? normalize(*lighting.direction) : view;
-  const double tolerance = stability_tolerance * length(x - scene.camera.eye);
-  std::vector<Classified> samples;
+  std::vector<FieldSample> samples;
   for (std::size_t f = 0; f < fields.size(); ++f) {
-    FieldValue field;
-    if (volume.grids[f]) {
-      const GridField::Sample grid_sample = volume.grids[f]->at(x);
-      if (grid_sample.face_distance <= tolerance) pixel.unstable = true;
-      if (!grid_sample.field) {
-        samples.push_back({});  // nothing, not even the field's zero
-        continue;
-      }
-      field = *grid_sample.field;
-    } else {
-      field = evaluate_field(fields[f], x);
-    }
+    const Depths& part = parts[f];
+    if (part.near >= part.far) continue;
+    // Where the grid ends before its sample, the nearest place that it has.
+    const double z = volume.grids[f] ? std::clamp(depth, part.near, part.far) : depth;
+    const Point3d x = ray.origin + z * ray.direction;
+    const double tolerance = stability_tolerance * length(x - scene.camera.eye);
+    const FieldValue field =
+        volume.grids[f] ? volume.grids[f]->at(x) : evaluate_field(fields[f], x);
     if (field.boundary_distance <= tolerance) pixel.unstable = true;
     pixel.kernel_evaluations += field.num_kernels;
     Classified sample = classify(scene.transfer_functions[f], field.value);
+    if (volume.grids[f] &&
+        is_delicate(scene.transfer_functions[f], field, volume.largest_peak[f],
+                    scene.step_size * length(ray.direction),
+                    lighting.enabled && sample.extinction > 0, volume.smallest_radius[f])) {
+      pixel.unstable = true;
+    }
     if (lighting.enabled) {
-      if (field.absolute > 0 && field.absolute < faintest_normal * volume.largest_peak[f]) {
+      if (!volume.grids[f] && field.absolute > 0 &&
+          field.absolute < faintest_normal * volume.largest_peak[f]) {
         pixel.faint = true;
       }
       sample = shade(sample, lighting, normal_of(field, volume.smallest_radius[f]), view, light);
     }
-    samples.push_back(sample);
+    samples.push_back({sample, part});
   }
   return samples;
 }
@@ -187,13 +216,14 @@ class Way {
   }
 
   /// Passes a sample that stands for depths `begin` to `end`, cut where layers are.
-  void pass(const std::vector<Classified>& fields, double begin, double end,
+  void pass(const std::vector<FieldSample>& fields, double begin, double end,
             double length_per_depth) {
     while (begin < end && !ended()) {
       const bool cut = next_ < layers_.size() && layers_[next_].depth < end;
       const double to = cut ? layers_[next_].depth : end;
-      for (const Classified& field : fields) {
-        composite(pixel_.color, field, (to - begin) * length_per_depth);
+      for (const FieldSample& field : fields) {
+        const double part = std::min(to, field.part.far) - std::max(begin, field.part.near);
+        composite(pixel_.color, field.classified, std::max(part, 0.) * length_per_depth);
       }
       check_termination();
       if (cut) meet_layers(std::nextafter(to, end));
@@ -216,10 +246,6 @@ class Way {
   std::size_t next_ = 0;
 };
 
-struct Depths {
-  double near, far;
-};
-
 /// Between which depths no plane cuts the ray away.
 Depths kept_by(const std::vector<ClipPlane>& planes, const CameraRay& ray) {
   Depths kept{0, std::numeric_limits<double>::infinity()};
@@ -234,12 +260,26 @@ Depths kept_by(const std::vector<ClipPlane>& planes, const CameraRay& ray) {
   return kept;
 }
 
+/// Between which depths the ray is in a grid's hull. Unstable where it runs along a face.
+Depths hull_of(const GridField& grid, const CameraRay& ray, const Point3d& eye, double step_size,
+               Pixel& pixel) {
+  constexpr double rounding = 1e-9, too_much = 1e-4;
+  std::vector<ClipPlane> wider = grid.faces();
+  for (ClipPlane& face : wider) {
+    face.distance +=
+        rounding * (std::abs(face.distance - dot(face.normal, eye - Point3d{})) + step_size);
+  }
+  const Depths hull = kept_by(grid.faces(), ray), wide = kept_by(wider, ray);
+  const double more = std::max(wide.far - wide.near, 0.) - std::max(hull.far - hull.near, 0.);
+  if (more > too_much * step_size) pixel.unstable = true;
+  return hull;
+}
+
 Pixel render_pixel(const Volume& volume, const ResolvedScene& scene,
                    const std::vector<Layer>& layers, int px, int py) {
   const Point3d eye = scene.camera.eye;
   const double step_size = scene.step_size;
   const CameraRay ray = camera_ray(scene.camera, scene.render.width, scene.render.height, px, py);
-  const Vector3d view = -normalize(ray.direction);
   std::vector<std::vector<ParticleKernel>> fields;
   for (const auto& kernels : volume.fields) {
     fields.push_back(kernels_near_ray(kernels, ray, eye));
@@ -247,6 +287,11 @@ Pixel render_pixel(const Volume& volume, const ResolvedScene& scene,
 
   const Depths kept = kept_by(scene.render.clip_planes, ray);
   Pixel pixel;
+  std::vector<std::optional<Depths>> hulls;
+  for (const auto& grid : volume.grids) {
+    hulls.emplace_back();
+    if (grid) hulls.back() = hull_of(*grid, ray, eye, step_size, pixel);
+  }
   Way way(layers, scene.render.termination_opacity, pixel);
   // From the last plane before the box, or the first of all, to the first one behind the box.
   const double first = std::max(0., std::floor(volume.near / step_size - 0.5));
@@ -255,14 +300,26 @@ Pixel render_pixel(const Volume& volume, const ResolvedScene& scene,
     const Point3d x = ray.origin + (k + 0.5) * step_size * ray.direction;
     const double tolerance = stability_tolerance * length(x - eye);
     if (distance_to_faces(volume.box, x) <= tolerance) pixel.unstable = true;
-    if (!volume.box.contains(x)) continue;
+    const bool in_box = volume.box.contains(x);
+    std::vector<Depths> parts;
+    bool any = in_box;
+    for (const auto& hull : hulls) {
+      Depths part{k * step_size, in_box ? (k + 1) * step_size : 0};
+      if (hull) {
+        part = {std::max(k * step_size, hull->near), std::min((k + 1) * step_size, hull->far)};
+      }
+      any |= part.near < part.far;
+      parts.push_back(part);
+    }
+    if (!any) continue;
     const double begin = std::max(k * step_size, kept.near);
     const double end = std::min((k + 1) * step_size, kept.far);
     if (begin >= end) continue;
     way.meet_layers(k * step_size);
     if (way.ended()) break;
     ++pixel.samples;
-    const auto samples = classify_sample(volume, scene, fields, x, view, pixel);
+    const auto samples =
+        classify_sample(volume, scene, fields, ray, (k + 0.5) * step_size, parts, pixel);
     way.pass(samples, begin, end, length(ray.direction));
   }
   way.meet_layers(std::numeric_limits<double>::infinity());

@@ -21,7 +21,8 @@ struct Image {
   /// One flag a pixel, [height][width]: 1 where rounding may change the picture visibly, since a
   /// sample lies within 1e-5 of its distance from the eye to the support boundary of a selected
   /// particle or to a face of the volume, or an opacity lies within 1e-5 of termination,
-  /// or it is faint.
+  /// or it is faint; or since a ray runs along a face of a grid, or the rounding of a grid's value
+  /// is seen.
   std::vector<unsigned char> unstable;
   /// 1 where a lit sample's field is less than 1e-20 of its kernels' peak: whether it has a normal
   /// depends on the smallest number.

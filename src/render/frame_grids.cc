@@ -22,6 +22,14 @@ bool shows(const TransferFunction& function, double low, double high) {
   return std::any_of(first, below == points.end() ? below : below + 1, is_opaque);
 }
 
+/// A value without extinction; 0 if there is none.
+double find_transparent(const TransferFunction& function) {
+  for (const TransferFunction::Point& point : function.points) {
+    if (point.extinction == 0) return point.value;
+  }
+  return 0;
+}
+
 }  // namespace
 
 std::vector<FrameGrid> make_frame_grids(const GridFields& grids, const KernelSet& kernels,
@@ -42,8 +50,10 @@ std::vector<FrameGrid> make_frame_grids(const GridFields& grids, const KernelSet
     for (const MacroCells::Range& range : grid.cells->ranges()) {
       out.visible.push_back(shows(function, range.min, range.max) ? 1 : 0);
     }
-    out.shows_zero = classifiers[grid.field].visibility.shows_zero();
     out.value_scale = static_cast<float>(kernels.fields[grid.field].value_scale);
+    if (classifiers[grid.field].visibility.shows_zero()) {
+      out.hidden_value = static_cast<float>(find_transparent(function)) * out.value_scale;
+    }
     const Point3d eye_index = sampler.to_index(eye);
     for (int i = 0; i < 3; ++i) {
       Vector3d one;

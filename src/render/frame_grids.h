@@ -18,11 +18,12 @@ struct FrameGrid {
   GridView view;
   std::array<int, 3> dims{};          ///< of `visible`
   std::vector<std::uint8_t> visible;  ///< whether a macro cell may show anything
-  bool shows_zero = false;            ///< of the field: so places that it has not are marked
-  double eye[3];                      ///< index coordinates
-  double axes[3][3];                  ///< of those the gradients, in camera axes
-  float value_scale = 1;              ///< buffer's value over the grid's
-  float gradient[3][3];               ///< camera axes from index axes, value_scale included
+  /// Of the buffer, for places that are left out; not 0 only where the field shows at 0.
+  float hidden_value = 0;
+  double eye[3];          ///< index coordinates
+  double axes[3][3];      ///< of those the gradients, in camera axes
+  float value_scale = 1;  ///< buffer's value over the grid's
+  float gradient[3][3];   ///< camera axes from index axes, value_scale included
 };
 
 /// `transfer_functions` are one a field, and so are `classifiers`, made of them.

@@ -44,6 +44,7 @@ struct SweepMemory {
   std::vector<std::uint64_t> visible;  ///< [group][block][field], a bit a plane
   static constexpr int num_blocks = AreaBuffer::groups * AreaBuffer::groups * group_blocks;
   std::vector<RayState> blocks = std::vector<RayState>(num_blocks);  ///< as in AreaBuffer
+  std::vector<FieldRange> fields;  ///< [block][field], if there are grids
   TileLayers layers;
   std::vector<BlockLayers> block_layers;  ///< one a block, if FrameContext::has_cuts()
   /// Of each block's rays, as in RayState.
@@ -116,9 +117,12 @@ class AreaSweep {
     end_ = -1;
     if (context_.layers) context_.layers(area_, memory_.layers);
     if (context_.has_cuts()) memory_.block_layers.resize(SweepMemory::num_blocks);
+    const std::size_t num_fields = context_.grids.empty() ? 0 : context_.classifiers.size();
+    memory_.fields.resize(SweepMemory::num_blocks * num_fields);
     for_each_block([&](std::size_t b, int x, int y) {
       RayState& rays = memory_.blocks[b];
-      start_rays(context_, x, y, AreaBuffer::group_size, block_rows, rays);
+      start_rays(context_, x, y, AreaBuffer::group_size, block_rows,
+                 memory_.fields.data() + b * num_fields, rays);
       if (context_.has_cuts()) {
         take_layers(context_, memory_.layers, area_, x, y, AreaBuffer::group_size,
                     memory_.block_layers[b], rays);
@@ -292,8 +296,9 @@ class AreaSweep {
                            static_cast<std::size_t>(v) * memory_.buffer.block_floats() +
                            grid.field * field_floats_;
         AreaBuffer::PlaneBits& touched = memory_.buffer.touched(row, column)[grid.field];
-        sample_frame_grid(grid, packet, context_.view.planes, batch, context_.gradients,
-                          context_.absolute, out, memory_.buffer.plane_floats(),
+        sample_frame_grid(grid, packet, memory_.blocks[b].fields[grid.field], context_.view.planes,
+                          batch, context_.gradients, context_.absolute, out,
+                          memory_.buffer.plane_floats(),
                           [&](int k) { touched |= AreaBuffer::PlaneBits{1} << k; });
       }
     }

@@ -50,11 +50,12 @@ std::uint64_t sample_field(const FrameContext& context, const SamplingConstants&
 }
 
 /// Pass 1 for one slab, of the fields that are grids.
-void sample_grids(const FrameContext& context, const RayPacket& packet, const Slab& slab,
-                  SampleBuffer& buffer) {
+void sample_grids(const FrameContext& context, const RayPacket& packet, const RayState& rays,
+                  const Slab& slab, SampleBuffer& buffer) {
   const std::size_t stride = buffer.layout().floats_per_sample();
   for (const FrameGrid& grid : context.grids) {
-    sample_frame_grid(grid, packet, context.view.planes, slab, context.gradients, context.absolute,
+    sample_frame_grid(grid, packet, rays.fields[grid.field], context.view.planes, slab,
+                      context.gradients, context.absolute,
                       buffer.at(0, static_cast<int>(grid.field)), stride,
                       [&](int i) { buffer.touch(i, i); });
   }
@@ -73,7 +74,7 @@ std::uint64_t render_packet(const FrameContext& context, const SamplingConstants
     if (context.any_kernels) {
       evaluations += sample_field(context, constants, packet, rays, slab, buffer);
     }
-    sample_grids(context, packet, slab, buffer);
+    sample_grids(context, packet, rays, slab, buffer);
     clock.lap(Stage::sums);
     integrator.run(slab, buffer, rays, layers);
     clear_touched(buffer);
@@ -90,6 +91,7 @@ TileCounts render_packets(const FrameContext& context, const Tile& tile, Framebu
   const SamplingConstants constants = make_constants(*context.kernels);
   const Integrator integrator(context.classifiers, context.shading, make_layout(context));
   SampleBuffer buffer(make_layout(context), std::min(context.samples_per_pass, 64));
+  std::vector<FieldRange> fields(context.grids.empty() ? 0 : context.classifiers.size());
   TileLayers layers;
   BlockLayers block_layers;
   if (context.layers) context.layers(tile, layers);
@@ -99,7 +101,7 @@ TileCounts render_packets(const FrameContext& context, const Tile& tile, Framebu
     for (int px = tile.x; px < tile.x + tile.width; px += packet_width) {
       const RayPacket packet = make_ray_packet(context, px, py, packet_width, packet_height);
       RayState rays;
-      start_rays(context, px, py, packet_width, packet_height, rays);
+      start_rays(context, px, py, packet_width, packet_height, fields.data(), rays);
       const bool cuts = context.has_cuts() && take_layers(context, layers, tile, px, py,
                                                           packet_width, block_layers, rays);
       clock.lap(Stage::setup);

@@ -127,7 +127,6 @@ FrameContext make_context(const KernelSet& kernels, const GridFields& grids,
       make_frame_grids(grids, kernels, context.view, scene.transfer_functions, context.classifiers);
   context.any_kernels = grids.size() < kernels.fields.size();
   context.shading = make_shading(scene, axes, kernels);
-  context.shading.has_gaps = !grids.empty();
   if (!context.orthographic) {
     context.shading.max_ray_length =
         static_cast<float>(std::hypot(1, context.half_width, context.half_height));

@@ -13,7 +13,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 
 #include "grid/sample_grid-inl.h"
 #include "render/frame_grids.h"
@@ -31,42 +30,10 @@ using Doubles = hn::Vec<DoubleTag>;
 /// in double, since the eye may be millions of steps away.
 struct GridRays {
   alignas(64) double start[3][max_lanes], along[3][max_lanes];
-  /// Samples in the hull, as in RayState.
-  alignas(64) float first[max_lanes], last[max_lanes];
+  alignas(64) double near[max_lanes], far[max_lanes];  ///< depths at which they are in the hull
 };
 
-/// Which of the ray's samples lie in the hull, faces included.
-inline void clip_to_hull(const FrameGrid& grid, const SamplePlanes& planes, GridRays& rays) {
-  const DoubleTag d;
-  const hn::Rebind<float, DoubleTag> df;
-  const Doubles inverse_step = hn::Set(d, 1 / planes.step), half = hn::Set(d, 0.5);
-  const Doubles first_plane = hn::Set(d, static_cast<double>(planes.first));
-  for (std::size_t l = 0; l < num_lanes; l += hn::Lanes(d)) {
-    Doubles near = hn::Zero(d), far = hn::Set(d, 1e30);
-    for (std::size_t i = 0; i < 3; ++i) {
-      const Doubles start = hn::Load(d, rays.start[i] + l);
-      // A ray along a face: depths become huge, and 0 on the face itself.
-      Doubles along = hn::Load(d, rays.along[i] + l);
-      along = hn::IfThenElse(hn::Eq(along, hn::Zero(d)), hn::Set(d, 1e-290), along);
-      const Doubles inverse = hn::Div(hn::Set(d, 1.0), along);
-      const Doubles a = hn::Mul(hn::Neg(start), inverse);
-      const Doubles b = hn::Mul(hn::Sub(hn::Set(d, grid.view.num_cells[i]), start), inverse);
-      near = hn::Max(near, hn::Min(a, b));
-      far = hn::Min(far, hn::Max(a, b));
-    }
-    // (within what a float holds; no frame has so many planes)
-    const auto sample = [&](Doubles v) MOTES_INLINE HWY_ATTR {
-      const Doubles most = hn::Set(d, 1e9);
-      return hn::DemoteTo(df, hn::Max(hn::Min(hn::Sub(v, first_plane), most), hn::Neg(most)));
-    };
-    hn::Store(sample(hn::Ceil(hn::MulSub(near, inverse_step, half))), df, rays.first + l);
-    const Doubles last = hn::Floor(hn::MulSub(far, inverse_step, half));
-    hn::Store(sample(hn::IfThenElse(hn::Le(near, far), last, hn::Set(d, -1e30))), df,
-              rays.last + l);
-  }
-}
-
-inline void make_grid_rays(const FrameGrid& grid, const RayPacket& packet,
+inline void make_grid_rays(const FrameGrid& grid, const RayPacket& packet, const FieldRange& range,
                            const SamplePlanes& planes, GridRays& rays) {
   const DoubleTag d;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -80,7 +47,18 @@ inline void make_grid_rays(const FrameGrid& grid, const RayPacket& packet,
       hn::Store(at(packet.direction_x, packet.direction_y, forward), d, rays.along[i] + l);
     }
   }
-  clip_to_hull(grid, planes, rays);
+  const auto depth = [&](const float* sample, const float* fraction,
+                         std::size_t l) MOTES_INLINE HWY_ATTR {
+    const hn::Rebind<float, DoubleTag> df;
+    const Doubles place = hn::Add(hn::PromoteTo(d, hn::Load(df, sample + l)),
+                                  hn::PromoteTo(d, hn::Load(df, fraction + l)));
+    const Doubles first = hn::Set(d, static_cast<double>(planes.first));
+    return hn::Mul(hn::Add(place, first), hn::Set(d, planes.step));
+  };
+  for (std::size_t l = 0; l < num_lanes; l += hn::Lanes(d)) {
+    hn::Store(depth(range.first, range.enters, l), d, rays.near + l);
+    hn::Store(depth(range.last, range.leaves, l), d, rays.far + l);
+  }
 }
 
 /// Blocks of cells of one axis, both included.
@@ -134,20 +112,22 @@ inline bool may_show(const FrameGrid& grid, const GridRays& rays, double near, d
   return false;
 }
 
-/// Places of the rays at a depth.
+/// Places of the rays at a depth, or next to it in the hull.
 HWY_INLINE Lanes index_at(const GridRays& rays, std::size_t axis, double depth) {
   const DoubleTag d;
   const hn::Rebind<float, DoubleTag> df;
   alignas(64) float out[max_lanes];
   for (std::size_t l = 0; l < num_lanes; l += hn::Lanes(d)) {
-    const Doubles at = hn::MulAdd(hn::Set(d, depth), hn::Load(d, rays.along[axis] + l),
-                                  hn::Load(d, rays.start[axis] + l));
+    const Doubles z =
+        hn::Min(hn::Max(hn::Set(d, depth), hn::Load(d, rays.near + l)), hn::Load(d, rays.far + l));
+    const Doubles at =
+        hn::MulAdd(z, hn::Load(d, rays.along[axis] + l), hn::Load(d, rays.start[axis] + l));
     hn::Store(hn::DemoteTo(df, at), df, out + l);
   }
   return hn::Load(LaneTag(), out);
 }
 
-/// Samples of a plane into their channels: NaN where `inside` says that the grid is not.
+/// Samples of a plane into their channels: 0 where `inside` says that the grid is not.
 template <bool kCubic, bool kGradients>
 HWY_NOINLINE void sample_plane(const FrameGrid& grid, const GridRays& rays, double depth,
                                LaneMask inside, bool absolute, float* out) {
@@ -155,9 +135,8 @@ HWY_NOINLINE void sample_plane(const FrameGrid& grid, const GridRays& rays, doub
   const GridPoints points{index_at(rays, 0, depth), index_at(rays, 1, depth),
                           index_at(rays, 2, depth)};
   const GridSamples s = sample_grid<kCubic, kGradients>(d, grid.view, points);
-  const Lanes nan = hn::Set(d, std::numeric_limits<float>::quiet_NaN());
   const Lanes value = hn::Mul(s.value, hn::Set(d, grid.value_scale));
-  hn::Store(hn::IfThenElse(inside, value, nan), d, out);
+  hn::Store(hn::IfThenElseZero(inside, value), d, out);
   if constexpr (kGradients) {
     for (std::size_t a = 0; a < 3; ++a) {
       const float* const g = grid.gradient[a];
@@ -174,16 +153,16 @@ HWY_NOINLINE void sample_plane(const FrameGrid& grid, const GridRays& rays, doub
 inline constexpr int planes_looked_at = 8;
 
 /// Puts a grid's samples on the planes of a slab to out, out + plane_floats, ...: where the field
-/// may show something. Elsewhere the buffer keeps its zeros, but where zero shows there is NaN
-/// (ShadingConstants::has_gaps). Calls touch(i) for each plane that it writes to.
+/// may show something. Elsewhere the buffer keeps its zeros or, where zero shows, gets a value that
+/// does not. Calls touch(i) for each plane that it writes to. `range` is that of the grid's field.
 template <class Touch>
-void sample_frame_grid(const FrameGrid& grid, const RayPacket& packet, const SamplePlanes& planes,
-                       const Slab& slab, bool gradients, bool absolute, float* out,
-                       std::size_t plane_floats, Touch&& touch) {
+void sample_frame_grid(const FrameGrid& grid, const RayPacket& packet, const FieldRange& range,
+                       const SamplePlanes& planes, const Slab& slab, bool gradients, bool absolute,
+                       float* out, std::size_t plane_floats, Touch&& touch) {
   const LaneTag d;
+  const Lanes first = hn::Load(d, range.first), last = hn::Load(d, range.last);
   GridRays rays;
-  make_grid_rays(grid, packet, planes, rays);
-  const Lanes first = hn::Load(d, rays.first), last = hn::Load(d, rays.last);
+  make_grid_rays(grid, packet, range, planes, rays);
   const auto sample = grid.view.cubic
                           ? (gradients ? &sample_plane<true, true> : &sample_plane<true, false>)
                           : (gradients ? &sample_plane<false, true> : &sample_plane<false, false>);
@@ -192,9 +171,12 @@ void sample_frame_grid(const FrameGrid& grid, const RayPacket& packet, const Sam
     const SampleIndex k = slab.first + begin;
     const Lanes low = hn::Set(d, static_cast<float>(k));
     const Lanes high = hn::Set(d, static_cast<float>(slab.first + end - 1));
+    // (a sample at the hull may be taken up to half a step away from its plane)
+    const double before = planes.depth(k) - 0.5 * planes.step;
+    const double behind = planes.depth(slab.first + end - 1) + 0.5 * planes.step;
     const bool any = !hn::AllFalse(d, hn::And(hn::Le(first, high), hn::Ge(last, low))) &&
-                     may_show(grid, rays, planes.depth(k), planes.depth(slab.first + end - 1));
-    if (!any && !grid.shows_zero) continue;
+                     may_show(grid, rays, before, behind);
+    if (!any && grid.hidden_value == 0) continue;
     for (int i = begin; i < end; ++i) {
       float* const at = out + static_cast<std::size_t>(i) * plane_floats;
       const Lanes place = hn::Set(d, static_cast<float>(slab.first + i));
@@ -202,7 +184,7 @@ void sample_frame_grid(const FrameGrid& grid, const RayPacket& packet, const Sam
       if (any) {
         sample(grid, rays, planes.depth(slab.first + i), inside, absolute, at);
       } else {
-        hn::Store(hn::Set(d, std::numeric_limits<float>::quiet_NaN()), d, at);
+        hn::Store(hn::Set(d, grid.hidden_value), d, at);
       }
       touch(i);
     }

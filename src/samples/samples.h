@@ -48,15 +48,25 @@ struct RayPacket {
   alignas(64) double direction_x[max_lanes], direction_y[max_lanes];
 };
 
+/// The samples of rays at which a field is, both included, and what it has of the first and the
+/// last one's step: from `enters` on and up to `leaves`, 0 to 1. One float a lane; first > last:
+/// none.
+struct FieldRange {
+  alignas(64) float first[max_lanes], last[max_lanes];
+  alignas(64) float enters[max_lanes], leaves[max_lanes];
+};
+
 /// How far the rays of a packet have come: what pass 2 reads and changes, one float a lane.
 struct RayState {
-  /// Samples inside the volume's box, both included; first > last: none. A ray that ends early has
-  /// its last sample moved up. Whole numbers, exact in float: a frame has at most 1e7 planes.
+  /// Samples inside the volume, both included; first > last: none. A ray that ends early has its
+  /// last sample moved up. Whole numbers, exact in float: a frame has at most 1e7 planes.
   alignas(64) float first[max_lanes], last[max_lanes];
   SampleIndex begin = 0, end = -1;  ///< of all lanes; begin > end: none
   /// What clip planes leave of the first and the last sample's step: from `enters` on and up to
   /// `leaves`, 0 to 1. Set, and looked at, only where there are such planes.
   alignas(64) float enters[max_lanes], leaves[max_lanes];
+  /// One a field; null: all of them are at all samples.
+  const FieldRange* fields = nullptr;
   alignas(64) float length[max_lanes];          ///< of the direction
   alignas(64) float half_to_eye[3][max_lanes];  ///< half of the unit vector to the eye
   alignas(64) float r[max_lanes], g[max_lanes], b[max_lanes], a[max_lanes];

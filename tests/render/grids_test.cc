@@ -2,6 +2,7 @@
 // them, alone and among fields of particles.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <memory>
@@ -148,12 +149,47 @@ TEST(GridPictures, ALinearFieldIsExact) {
       const double x = (2 * (px + 0.5) / image.width - 1) * image.width / image.height;
       double depth = 0;
       for (int k = 0; k < 300; ++k) {
-        const double z = distance - (k + 0.5) * step;
-        if (std::abs(z) <= size) depth += 0.4 / 8 * linear({x, 0, z}) * step;
+        const double near = std::max(k * step, distance - size);
+        const double far = std::min((k + 1) * step, distance + size);
+        if (near >= far) continue;
+        const double z = distance - std::clamp((k + 0.5) * step, near, far);
+        depth += 0.4 / 8 * linear({x, 0, z}) * (far - near);
       }
       // 80 samples of float arithmetic.
       EXPECT_NEAR(image.pixel(px, 7)[3], 1 - std::exp(-depth), 2e-6) << px;
     }
+  }
+}
+
+TEST(GridPictures, EndAtTheFacesOfTheHull) {
+  // The same everywhere in a sheared hull: opacity is a matter of the way through it, not of where
+  // its samples lie.
+  constexpr double extinction = 0.2;
+  Grid sheared;
+  sheared.name = "sheared";
+  sheared.dims = {3, 3, 3};
+  sheared.origin = {-3, -2, -2};
+  sheared.steps = {Vector3d{2, 0, 0}, {0, 2, 0}, {1, 0, 2}};
+  sheared.values.assign(27, 1);
+  FieldSource source;
+  source.name = "grid";
+  source.grid = std::make_shared<const Grid>(std::move(sheared));
+  PlainScene s = grid_scene(source, 10);
+  s.scene.transfer_functions = {
+      {{{.value = 1, .color = {1, 1, 1}, .extinction = extinction}}, false}};
+  s.scene.camera.orthographic_height = 4;
+  s.scene.step_size = 0.83;
+  s.scene.render.termination_opacity = 1;
+  check(s, "sheared");
+  s.scene.render.clip_planes = {{{0.3, 0.1, 1}, 0.4}};
+  check(s, "sheared and clipped");
+  s.scene.render.clip_planes.clear();
+  const Framebuffer image = Renderer(s.particles, s.scene.fields).render(s.scene, {});
+  for (int px = 0; px < image.width; ++px) {
+    // At z the hull reaches from x = z/2 - 2 to z/2 + 2, and z from -2 to 2.
+    const double x = (2 * (px + 0.5) / image.width - 1) * 2 * image.width / image.height;
+    const double way = std::max(std::min(2.0, 2 * x + 4) - std::max(-2.0, 2 * x - 4), 0.0);
+    EXPECT_NEAR(image.pixel(px, 7)[3], 1 - std::exp(-extinction * way), 1e-6) << px;
   }
 }
 
