@@ -65,8 +65,8 @@ async function replacePage(page: Page, file: string): Promise<void> {
 
 /** The page as its user meets it. */
 export class Screen {
-  /** The newest lossless picture that came, as PNG. */
-  lastPicture = Buffer.alloc(0);
+  /** The lossless pictures that came through the present socket, as PNG by their numbers. */
+  private readonly pictures = new Map<number, Buffer>();
   readonly faults: string[] = [];
   readonly canvas: Locator;
 
@@ -79,12 +79,13 @@ export class Screen {
         this.faults.push(message.text());
       }
     });
-    page.on("websocket", (socket) =>
+    page.on("websocket", (socket) => {
+      this.pictures.clear();
       socket.on("framereceived", ({ payload }) => {
         if (typeof payload === "string" || payload.readUInt16LE(18) !== 1) return;
-        this.lastPicture = Buffer.from(payload.subarray(36));
-      }),
-    );
+        this.pictures.set(payload.readUInt32LE(4), Buffer.from(payload.subarray(36)));
+      });
+    });
   }
 
   async open(viewer: Viewer): Promise<void> {
@@ -108,6 +109,13 @@ export class Screen {
   /** Whether a fuller or newer picture is to come, and the number of the one that is shown. */
   private shown(): Promise<string> {
     return this.canvas.evaluate(({ ariaBusy, dataset }) => `${ariaBusy} ${dataset.frame}`);
+  }
+
+  /** The picture that is shown, at rest, as the server sent it: of that one hears later than the page. */
+  async picture(): Promise<Buffer> {
+    const id = Number(await this.canvas.getAttribute("data-frame"));
+    await expect.poll(() => this.pictures.has(id)).toBe(true);
+    return this.pictures.get(id)!;
   }
 
   /** Does something that changes the picture and waits for the new one. */
