@@ -56,10 +56,11 @@ export interface SavedScene {
 /** Has another page answered for the program's, under the same nonce. */
 async function replacePage(page: Page, file: string): Promise<void> {
   await page.route(/\/\?token=/, async (route) => {
-    const response = await route.fetch();
+    const response = await route.fetch().catch(() => null);
+    if (!response) return route.abort();
     const nonce = /nonce-([^']+)/.exec(response.headers()["content-security-policy"] ?? "")?.[1];
     const body = readFileSync(file, "utf8").replaceAll("{{nonce}}", nonce ?? "");
-    await route.fulfill(response.ok() ? { response, body } : { response });
+    return route.fulfill(response.ok() ? { response, body } : { response });
   });
 }
 
