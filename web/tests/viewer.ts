@@ -104,7 +104,7 @@ export class Screen {
       before = now;
       return same && now.startsWith("false");
     };
-    await expect.poll(isSettled, { intervals: [400], timeout: 60_000 }).toBe(true);
+    await expect.poll(isSettled, { intervals: [400], timeout: 150_000 }).toBe(true);
   }
 
   /** Whether a fuller or newer picture is to come, and the number of the one that is shown. */
