@@ -15,7 +15,11 @@ export default defineConfig({
     viewport: { width: 640, height: 480 },
     launchOptions: {
       executablePath: process.env.MOTES_CHROMIUM ?? "/usr/bin/chromium",
-      args: ["--no-sandbox"],
+      // A replaced page counts as one from outside, which may not open sockets to this machine.
+      args: [
+        "--no-sandbox",
+        ...(process.env.MOTES_PAGE ? ["--disable-features=LocalNetworkAccessChecks"] : []),
+      ],
     },
   },
 });

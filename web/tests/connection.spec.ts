@@ -22,7 +22,7 @@ test("connects again after the server has been restarted", async ({ screen, view
   await screen.open(first);
   await screen.change(() => screen.drag([200, 200], [300, 230]));
   const { camera } = (await screen.savedScene()).scene;
-  const picture = screen.lastPicture;
+  const picture = await screen.picture();
 
   await first.stop();
   await expect(page.getByRole("status")).toContainText("Trying again");
@@ -30,5 +30,5 @@ test("connects again after the server has been restarted", async ({ screen, view
   await expect(page.getByRole("status")).not.toContainText("Trying again");
   // The page still looks from where it did.
   expect((await screen.savedScene()).scene.camera).toEqual(camera);
-  expect(screen.lastPicture.equals(picture)).toBe(true);
+  expect((await screen.picture()).equals(picture)).toBe(true);
 });

@@ -12,14 +12,14 @@ test("edits a transfer function", async ({ screen, view }) => {
   await screen.open(await view([zeoliteScene]));
   const points = async () => (await screen.savedScene()).scene.fields[0]!.transfer_function.points;
   const before = await points();
-  const first = screen.lastPicture;
+  const first = await screen.picture();
 
   // A press beside the curve adds a point, which the same press drags.
   const editor = (await page.locator(".editor").first().boundingBox())!;
   const x = editor.x + editor.width * 0.73;
   await screen.change(() => screen.drag([x, editor.y + 30], [x + 5, editor.y + 20]));
   const added = await points();
-  const second = screen.lastPicture;
+  const second = await screen.picture();
   expect(added).toHaveLength(before.length + 1);
   expect(second.equals(first)).toBe(false);
 
@@ -35,11 +35,11 @@ test("edits a transfer function", async ({ screen, view }) => {
   await screen.change(() => page.keyboard.press("Control+z"));
   await screen.change(() => page.keyboard.press("Control+z"));
   expect(await points()).toEqual(added);
-  expect(screen.lastPicture.equals(second)).toBe(true);
+  expect((await screen.picture()).equals(second)).toBe(true);
   await screen.canvas.focus();
   await screen.change(() => page.keyboard.press("Control+z"));
   expect(await points()).toEqual(before);
-  expect(screen.lastPicture.equals(first)).toBe(true);
+  expect((await screen.picture()).equals(first)).toBe(true);
   await screen.canvas.focus();
   await screen.change(() => page.keyboard.press("Control+Shift+Z"));
   expect(await points()).toEqual(added);
@@ -53,7 +53,7 @@ test("takes a colour map and hides a field", async ({ screen, view }) => {
   const { points } = (await screen.savedScene()).scene.fields[0]!.transfer_function;
   expect(points[0]!.color).toMatch(/^#00000[34]$/);
 
-  const shown = screen.lastPicture;
+  const shown = await screen.picture();
   await screen.change(() =>
     page
       .getByRole("button", { name: /^Hide / })
@@ -62,14 +62,14 @@ test("takes a colour map and hides a field", async ({ screen, view }) => {
       .click(),
   );
   expect((await screen.savedScene()).scene.fields[0]!.visible).toBe(false);
-  expect(screen.lastPicture.equals(shown)).toBe(false);
+  expect((await screen.picture()).equals(shown)).toBe(false);
   await screen.change(() =>
     page
       .getByRole("button", { name: /^Show / })
       .last()
       .click(),
   );
-  expect(screen.lastPicture.equals(shown)).toBe(true);
+  expect((await screen.picture()).equals(shown)).toBe(true);
 });
 
 test("changes the style and comes back", async ({ screen, view }) => {

@@ -27,7 +27,7 @@ test("saves a scene and a picture that the command line makes too", async ({
   copyFileSync((await screen.savedScene()).path, scene);
   const rendered = join(folder, "rendered.png");
   renderScene(scene, rendered);
-  expect(screen.lastPicture.equals(readFileSync(rendered))).toBe(true);
+  expect((await screen.picture()).equals(readFileSync(rendered))).toBe(true);
 
   await choose(screen.page, "Save picture");
   const picture = await savePicture(screen.page);
@@ -52,7 +52,7 @@ test("gives the line for a terminal", async ({ screen, view, folder }) => {
   const shell = `motes() { ${JSON.stringify(program)} "$@"; }\n${line}`;
   execFileSync("sh", ["-c", shell], { cwd: folder, stdio: "inherit" });
   const rendered = readFileSync(join(folder, "zeolite_mfi_3494.png"));
-  expect(screen.lastPicture.equals(rendered)).toBe(true);
+  expect((await screen.picture()).equals(rendered)).toBe(true);
 });
 
 test("loads a scene", async ({ screen, view, folder }) => {

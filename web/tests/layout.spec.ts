@@ -37,6 +37,8 @@ for (const { colorScheme, ...viewport } of windows) {
 
     test("has room for everything", async ({ screen, view }, info) => {
       const { page } = screen;
+      // Of 4K the full picture may take its time.
+      test.slow();
       await screen.open(await view([`${demo}/silica.json`]));
       for (const deed of ["Hide the panel", "Show the panel"]) {
         const button = page.locator(".toolbar").getByRole("button", { name: deed });

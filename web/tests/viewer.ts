@@ -56,17 +56,18 @@ export interface SavedScene {
 /** Has another page answered for the program's, under the same nonce. */
 async function replacePage(page: Page, file: string): Promise<void> {
   await page.route(/\/\?token=/, async (route) => {
-    const response = await route.fetch();
+    const response = await route.fetch().catch(() => null);
+    if (!response) return route.abort();
     const nonce = /nonce-([^']+)/.exec(response.headers()["content-security-policy"] ?? "")?.[1];
     const body = readFileSync(file, "utf8").replaceAll("{{nonce}}", nonce ?? "");
-    await route.fulfill(response.ok() ? { response, body } : { response });
+    return route.fulfill(response.ok() ? { response, body } : { response });
   });
 }
 
 /** The page as its user meets it. */
 export class Screen {
-  /** The newest lossless picture that came, as PNG. */
-  lastPicture = Buffer.alloc(0);
+  /** The lossless pictures that came through the present socket, as PNG by their numbers. */
+  private readonly pictures = new Map<number, Buffer>();
   readonly faults: string[] = [];
   readonly canvas: Locator;
 
@@ -79,12 +80,13 @@ export class Screen {
         this.faults.push(message.text());
       }
     });
-    page.on("websocket", (socket) =>
+    page.on("websocket", (socket) => {
+      this.pictures.clear();
       socket.on("framereceived", ({ payload }) => {
         if (typeof payload === "string" || payload.readUInt16LE(18) !== 1) return;
-        this.lastPicture = Buffer.from(payload.subarray(36));
-      }),
-    );
+        this.pictures.set(payload.readUInt32LE(4), Buffer.from(payload.subarray(36)));
+      });
+    });
   }
 
   async open(viewer: Viewer): Promise<void> {
@@ -102,12 +104,19 @@ export class Screen {
       before = now;
       return same && now.startsWith("false");
     };
-    await expect.poll(isSettled, { intervals: [400], timeout: 60_000 }).toBe(true);
+    await expect.poll(isSettled, { intervals: [400], timeout: 150_000 }).toBe(true);
   }
 
   /** Whether a fuller or newer picture is to come, and the number of the one that is shown. */
   private shown(): Promise<string> {
     return this.canvas.evaluate(({ ariaBusy, dataset }) => `${ariaBusy} ${dataset.frame}`);
+  }
+
+  /** The picture that is shown, at rest, as the server sent it: of that one hears later than the page. */
+  async picture(): Promise<Buffer> {
+    const id = Number(await this.canvas.getAttribute("data-frame"));
+    await expect.poll(() => this.pictures.has(id)).toBe(true);
+    return this.pictures.get(id)!;
   }
 
   /** Does something that changes the picture and waits for the new one. */
