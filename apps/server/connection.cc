@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <chrono>
 #include <optional>
 #include <string_view>
@@ -25,6 +26,7 @@ using namespace std::chrono_literals;
 /// A client that takes longer over a request's header, or sends none, is left.
 constexpr auto header_timeout = 15s;
 constexpr auto answer_timeout = 120s;
+constexpr auto leave_timeout = 3s;
 constexpr std::uint32_t max_header_bytes = 16384;
 
 
@@ -176,13 +178,26 @@ asio::awaitable<void> send(beast::tcp_stream& stream, Answer answer, unsigned ve
   }
 }
 
+/// Ends a connection so that its last answer arrives: what a client still sends, such as a body that
+/// is refused, is read for a while, since the system would else take back the answer.
+asio::awaitable<void> take_leave(beast::tcp_stream& stream) {
+  boost::system::error_code error;
+  stream.socket().shutdown(asio::ip::tcp::socket::shutdown_send, error);
+  std::array<char, 65536> nobody_reads{};
+  stream.expires_after(leave_timeout);
+  while (!error) {
+    co_await stream.async_read_some(asio::buffer(nobody_reads),
+                                    asio::redirect_error(asio::use_awaitable, error));
+  }
+}
+
 /// One request after the other; returns when the connection is done with.
 asio::awaitable<void> serve_requests(beast::tcp_stream& stream, Site& site) {
   beast::flat_buffer buffer;
   for (bool keep_alive = true; keep_alive;) {
     http::request_parser<http::empty_body> parser;
     parser.header_limit(max_header_bytes);
-    parser.body_limit(site.options.max_upload_bytes);
+    parser.body_limit(boost::none);  // uploads have their own
     stream.expires_after(header_timeout);
     co_await http::async_read_header(stream, buffer, parser, asio::use_awaitable);
     const auto& request = parser.get();
@@ -205,8 +220,7 @@ asio::awaitable<void> serve_requests(beast::tcp_stream& stream, Site& site) {
     }
     co_await send(stream, std::move(answer), version, head, keep_alive);
   }
-  boost::system::error_code ignored;
-  stream.socket().shutdown(asio::ip::tcp::socket::shutdown_send, ignored);
+  co_await take_leave(stream);
 }
 
 }  // namespace

@@ -70,7 +70,9 @@ void Studio::post_for(ClientId client, std::function<void(Viewer&)> task, bool b
 
 void Studio::run() {
   while (run_tasks()) {
-    if (!make_next_picture() && !do_long_task()) wait();
+    // What has been decided for one moment is waited for from that same moment.
+    const auto now = Clock::now();
+    if (!make_next_picture(now) && !do_long_task()) wait(now);
   }
 }
 
@@ -88,8 +90,7 @@ bool Studio::run_tasks() {
   }
 }
 
-void Studio::wait() {
-  const auto now = Clock::now();
+void Studio::wait(Clock::time_point now) {
   std::optional<Clock::time_point> until;
   for (const auto& [id, viewer] : viewers_) {
     const auto change = viewer.next_change(now);
@@ -118,9 +119,8 @@ void Studio::end() {
   under_way_ = UnderWay::nothing;
 }
 
-bool Studio::make_next_picture() {
+bool Studio::make_next_picture(Clock::time_point now) {
   if (!document_) return false;
-  const auto now = Clock::now();
   // In turn, those that move before those that do not.
   Viewers::iterator best = viewers_.end();
   std::optional<FramePlan> plan;

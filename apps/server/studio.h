@@ -88,9 +88,9 @@ class Studio {
   /// Does what others have asked for; false: the studio ends.
   bool run_tasks();
   /// Makes the picture that is wanted most; false: none is.
-  bool make_next_picture();
+  bool make_next_picture(Clock::time_point now);
   bool do_long_task();
-  void wait();
+  void wait(Clock::time_point now);
   void make_picture(Viewer& viewer, const FramePlan& plan);
   /// Says what is being rendered; false if there is something to be done before.
   bool begin(UnderWay what);

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <random>
 #include <vector>
 
@@ -124,8 +126,21 @@ class BruteForce {
                                                : view.eye + depth * (view.axes.forward + across);
     return case_.kernels.origin + (internal - Point3d{}) / case_.kernels.length_scale;
   }
-  reference::GridField::Sample at(std::uint32_t ray, double depth) const {
-    return field_.at(point(ray, depth));
+  /// The distance to the hull's faces, and the field where that is within.
+  struct Sample {
+    std::optional<reference::FieldValue> field;
+    double face_distance = 0;
+  };
+  Sample at(std::uint32_t ray, double depth) const {
+    const Point3d p = point(ray, depth);
+    Sample sample;
+    double room = std::numeric_limits<double>::infinity();
+    for (const ClipPlane& face : field_.faces()) {
+      room = std::min(room, face.distance - dot(normalize(face.normal), Vector3d(p)));
+    }
+    sample.face_distance = std::abs(room);
+    if (room >= 0) sample.field = field_.at(p);
+    return sample;
   }
 
   /// Both sides of a crossing lie in the hull.

@@ -1,0 +1,212 @@
+// The server as its clients meet it.
+#include "server/server.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "server/running_server.h"
+
+namespace motes::server {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+TEST(Server, GivesNothingWithoutTheToken) {
+  const RunningServer server;
+  for (const std::string target : {"/", "/socket", "/picture?client=1&width=9&height=9&format=png",
+                                   "/nowhere", "/?token=", "/?token=x", "/?Token=abc"}) {
+    EXPECT_EQ(request(server, http::verb::get, target).status, 403) << target;
+  }
+  EXPECT_EQ(request(server, http::verb::post, "/upload?name=a.xyz", "1\n").status, 403);
+  EXPECT_THROW(TestClient(server, "wrong"), boost::system::system_error);
+}
+
+TEST(Server, KnowsItsNamesAndItsOwnPages) {
+  const RunningServer server;
+  const std::string page = "/?token=" + server.token();
+  EXPECT_EQ(request(server, http::verb::get, page).status, 200);
+  EXPECT_EQ(request(server, http::verb::get, page, "", "evil.com").status, 403);
+  EXPECT_EQ(
+      request(server, http::verb::get, page, "", "127.0.0.1", "http://evil.com").status, 403);
+}
+
+TEST(Server, GivesThePageUnderAStrictPolicy) {
+  const RunningServer server;
+  const Reply page = request(server, http::verb::get, "/?token=" + server.token());
+  const std::string policy = page.headers["Content-Security-Policy"].to_string();
+  EXPECT_THAT(policy, StartsWith("default-src 'none'; script-src 'nonce-"));
+  EXPECT_THAT(page.body, HasSubstr("<!doctype html>"));
+  EXPECT_THAT(page.body, testing::Not(HasSubstr("{{nonce}}")));
+  const std::string nonce = policy.substr(policy.find("nonce-") + 6, 32);
+  EXPECT_THAT(page.body, HasSubstr("nonce=\"" + nonce + "\""));
+  EXPECT_EQ(page.headers["Cache-Control"], "no-store");
+}
+
+TEST(Server, StaysBelowItsBaseUrl) {
+  ServerOptions options;
+  options.base_url = "/motes/";
+  const RunningServer server(options);
+  EXPECT_EQ(request(server, http::verb::get, "/motes/?token=" + server.token()).status, 200);
+  EXPECT_EQ(request(server, http::verb::get, "/?token=" + server.token()).status, 404);
+}
+
+TEST(Server, ShowsTheSceneAndThenTheFullPicture) {
+  const RunningServer server;
+  TestClient client(server);
+  EXPECT_EQ(client.wait_for("hello").at("protocol"), 1);
+  const auto scene = client.wait_for("scene");
+  EXPECT_EQ(scene.at("data").at("particles"), 3);
+  client.set_size(64, 48);
+  client.look(5, 1, false);
+  std::string frame;
+  do frame = client.wait_for_final();
+  while (TestClient::number(frame, 8) != 5);
+  EXPECT_EQ(frame.substr(0, 4), "MTF1");
+  EXPECT_EQ(TestClient::number(frame, 20), 64U);
+  EXPECT_EQ(TestClient::number(frame, 24), 48U);
+  // The picture that is saved is the one that is seen.
+  const Reply picture = request(server, http::verb::get,
+                                "/picture?client=1&width=64&height=48&format=png&token=" +
+                                    server.token());
+  EXPECT_EQ(picture.status, 200);
+  EXPECT_EQ(picture.body, frame.substr(36));
+}
+
+TEST(Server, GivesSlowClientsFewerFramesAndNoLateOnes) {
+  const RunningServer server;
+  TestClient client(server);
+  client.wait_for("scene");
+  client.set_size(64, 48);
+  for (std::uint32_t i = 1; i <= 50; ++i) client.look(i, 1 + 0.01 * i, true);
+  const std::string first = client.wait_for_frame(false);
+  client.look(51, 3, false);
+  // No more than another one comes until one is acknowledged, and answers do not wait for that.
+  int frames = 1;
+  std::uint32_t newest = TestClient::number(first, 4);
+  for (int answer = 0; answer < 20; ++answer) {
+    client.send(R"({"type":"statistics"})");
+    while (true) {
+      const std::string message = client.read();
+      if (message.starts_with("MTF1")) {
+        ++frames;
+        newest = TestClient::number(message, 4);
+      } else if (message.find("\"statistics\"") != message.npos) {
+        break;
+      }
+    }
+  }
+  EXPECT_LE(frames, 2);
+  client.send(nlohmann::json{{"type", "ack"}, {"frame", newest}}.dump());
+  EXPECT_EQ(TestClient::number(client.wait_for_frame(), 8), 51U);
+}
+
+TEST(Server, ClosesTheClientThatSaysNonsenseAndNoOther) {
+  const RunningServer server;
+  TestClient good(server), bad(server), large(server);
+  good.wait_for("scene");
+  bad.send("nonsense");
+  EXPECT_EQ(bad.wait_for_close(), 4000);
+  large.send(std::string(max_message_bytes + 1, ' '));
+  large.wait_for_close();
+  good.send(R"({"type":"statistics"})");
+  good.wait_for("statistics");
+}
+
+TEST(Server, ClosesTheClientThatSaysTooMuch) {
+  const RunningServer server;
+  TestClient client(server);
+  std::thread flood([&client] {
+    try {
+      for (int i = 0; i < 20000; ++i) client.send(R"({"type":"ack","frame":0})");
+    } catch (const boost::system::system_error&) {
+      // It was closed.
+    }
+  });
+  EXPECT_EQ(client.wait_for_close(), 4000);
+  flood.join();
+}
+
+TEST(Server, TakesSoManyClientsAndNoMore) {
+  ServerOptions options;
+  options.max_clients = 2;
+  const RunningServer server(options);
+  TestClient first(server), second(server), third(server);
+  EXPECT_EQ(third.wait_for_close(), 4001);
+  first.wait_for("hello");
+}
+
+TEST(Server, OpensFilesOfItsFolderAlone) {
+  const RunningServer server;
+  TestClient client(server);
+  client.wait_for("scene");
+  client.send(R"({"type":"list","path":""})");
+  EXPECT_EQ(client.wait_for("listing").at("entries").size(), 2U);
+  for (const std::string path : {"../x.xyz", "/etc/passwd", "nowhere.xyz"}) {
+    client.send(nlohmann::json{{"type", "open"}, {"path", path}}.dump());
+    EXPECT_THAT(client.wait_for("error").at("message"), HasSubstr("there is no such file"));
+  }
+  client.send(R"({"type":"open","path":"other.xyz"})");
+  auto scene = client.wait_for("scene");
+  while (scene.at("data").at("particles") != 2) scene = client.wait_for("scene");
+}
+
+TEST(Server, TakesUploadsUpToItsLimit) {
+  ServerOptions options;
+  options.max_upload_bytes = 1000;
+  const RunningServer server(options);
+  const std::string upload = "/upload?name=sent.xyz&token=" + server.token();
+  EXPECT_EQ(request(server, http::verb::post, upload, std::string(1001, 'x')).status, 413);
+  const Reply reply = request(server, http::verb::post, upload, "1\n\nC 0 0 0\n");
+  ASSERT_EQ(reply.status, 200);
+  TestClient client(server);
+  const auto path = nlohmann::json::parse(reply.body).at("path");
+  client.send(nlohmann::json{{"type", "open"}, {"path", path}}.dump());
+  auto scene = client.wait_for("scene");
+  while (scene.at("data").at("particles") != 1) scene = client.wait_for("scene");
+}
+
+TEST(Server, SaysWhatIsWrongWithASceneAndKeepsTheOldOne) {
+  const RunningServer server;
+  TestClient client(server);
+  auto scene = client.wait_for("scene").at("scene");
+  const auto good = scene;
+  scene["fields"][0]["radius"] = -1;
+  client.send(nlohmann::json{{"type", "scene"}, {"sequence", 9}, {"scene", scene}}.dump());
+  const auto error = client.wait_for("error");
+  EXPECT_EQ(error.at("sequence"), 9);
+  EXPECT_THAT(error.at("message"), HasSubstr("fields[0].radius"));
+  TestClient other(server);
+  EXPECT_EQ(other.wait_for("scene").at("scene"), good);
+}
+
+TEST(Server, OutlivesThousandClientsThatComeAndGo) {
+  const RunningServer server;
+  for (int i = 0; i < 1000; ++i) {
+    TestClient client(server);
+    client.set_size(16, 16);
+    if (i % 3 == 0) client.look(1, 1, true);
+    if (i % 2 == 0) client.vanish();
+  }
+  TestClient client(server);
+  client.wait_for("scene");
+  client.set_size(16, 16);
+  client.look(1, 1, false);
+  EXPECT_EQ(TestClient::number(client.wait_for_final(), 8), 1U);
+  // Those that have gone are forgotten.
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+  int clients = 0;
+  do {
+    client.send(R"({"type":"statistics"})");
+    clients = client.wait_for("statistics").at("clients");
+  } while (clients != 1 && std::chrono::steady_clock::now() < deadline);
+  EXPECT_EQ(clients, 1);
+}
+
+}  // namespace
+}  // namespace motes::server
