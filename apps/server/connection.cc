@@ -5,6 +5,7 @@
 
 #include <array>
 #include <chrono>
+#include <limits>
 #include <optional>
 #include <string_view>
 
@@ -197,7 +198,7 @@ asio::awaitable<void> serve_requests(beast::tcp_stream& stream, Site& site) {
   for (bool keep_alive = true; keep_alive;) {
     http::request_parser<http::empty_body> parser;
     parser.header_limit(max_header_bytes);
-    parser.body_limit(boost::none);  // uploads have their own
+    parser.body_limit(std::numeric_limits<std::uint64_t>::max());  // uploads have their own
     stream.expires_after(header_timeout);
     co_await http::async_read_header(stream, buffer, parser, asio::use_awaitable);
     const auto& request = parser.get();
