@@ -226,7 +226,7 @@ class GridSurroundings {
     for (int i = 0; i < 3; ++i) start_[i] = grid.index_of(i, p);
   }
 
-  void look_along(const float (&directions)[3][max_lanes]) {
+  void look_along(const float (&directions)[3][max_lanes], std::size_t /*count*/) {
     for (std::size_t l = 0; l < num_lanes; ++l) {
       const Vector3d world{directions[0][l], directions[1][l], directions[2][l]};
       double direction[3];
@@ -234,6 +234,7 @@ class GridSurroundings {
       rays_.set(l, grid_.view, start_, direction);
     }
   }
+  void enter(float /*near*/, float /*far*/) {}
 
   HWY_NOINLINE Lanes evaluate(float distance) const {
     const LaneTag d;

@@ -58,7 +58,7 @@ struct IsosurfaceFrame {
   SurfaceView view;
   SamplePlanes planes;         ///< on which fields are sampled: `first` is in front of all kernels
   SampleIndex last_plane = 0;  ///< behind all kernels
-  double reach = 0;            ///< how far opaque levels hide the light of a place
+  Bounds3d box;                ///< beyond which there are no levels
   std::vector<ClipPlane> clip_planes;  ///< unit normals
 };
 
@@ -83,8 +83,8 @@ struct IsosurfaceHit {
 void trace_isosurfaces(const IsosurfaceFrame& frame, const RayGrid& grid,
                        std::vector<IsosurfaceHit>& out);
 
-/// Leaves out the directions, unit vectors, along which an opaque level is nearer than `length` and
-/// the frame's reach to a place on a surface with that normal. Rays are sampled every 1.5 steps.
+/// Leaves out the directions, unit vectors, along which an opaque level is nearer than `length`
+/// to a place on a surface with that normal. Rays are sampled every 1.5 steps.
 /// What clip planes cut away hides nothing.
 void prune(const IsosurfaceFrame& frame, const Point3d& place, const Vector3d& normal,
            double length, std::vector<Vector3f>& directions);

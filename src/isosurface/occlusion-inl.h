@@ -47,26 +47,35 @@ HWY_INLINE unsigned children_within(const Bvh::Node& node, const Point3f& p, flo
 /// The surroundings of a point in one field.
 class Surroundings {
  public:
-  Surroundings(const KernelSet& kernels, const SamplingConstants& constants, std::size_t f)
-      : kernels_(kernels), constants_(constants), f_(f) {
+  Surroundings(const KernelSet& kernels, const SamplingConstants& constants, std::size_t f,
+               const Point3d& start)
+      : kernels_(kernels), constants_(constants), f_(f), start_(start) {
     with_shape(constants, f, [&](const auto& shape) { distance_scale_ = shape.distance_scale; });
   }
 
-  /// Finds the kernels that reach within `length` of p.
-  void enter(const Point3d& p, float length) {
-    const float factor = constants_.fields[f_].support_factor;
-    const Point3f near(static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z));
-    local_.size = 0;
-    distance_.clear();
-    traverse(
-        kernels_.bvh,
-        [&](const Bvh::Node& node) { return children_within(node, near, length, factor); },
-        [&](std::size_t leaf) { add_leaf(leaf, p, length); });
+  /// Takes directions, of which the first `count` lanes matter.
+  void look_along(const float (&directions)[3][max_lanes], std::size_t count) {
+    std::copy_n(&directions[0][0], 3 * max_lanes, &directions_[0][0]);
+    middle_ = {};
+    for (std::size_t l = 0; l < count; ++l) middle_ = middle_ + direction(l);
+    middle_ = middle_ / static_cast<double>(count);
+    spread_ = 0;
+    for (std::size_t l = 0; l < count; ++l) {
+      spread_ = std::max(spread_, length(direction(l) - middle_));
+    }
   }
 
-  /// Takes directions, one a lane.
-  void look_along(const float (&directions)[3][max_lanes]) {
-    std::copy_n(&directions[0][0], 3 * max_lanes, &directions_[0][0]);
+  /// Finds the kernels that reach the lanes' rays between two distances.
+  void enter(float near, float far) {
+    const double middle = 0.5 * (static_cast<double>(near) + static_cast<double>(far));
+    // From the middle's place to those of a lane: across at `far`, and along it.
+    const double radius = static_cast<double>(far) * spread_ +
+                          0.5 * static_cast<double>(far - near) * motes::length(middle_);
+    if (radius < static_cast<double>(far)) {
+      gather(start_ + middle * middle_, static_cast<float>(1.00001 * radius));
+    } else {
+      gather(start_, far);
+    }
   }
 
   /// The field at a distance from the point along the lanes' directions.
@@ -92,6 +101,24 @@ class Surroundings {
   }
 
  private:
+  Vector3d direction(std::size_t lane) const {
+    return {directions_[0][lane], directions_[1][lane], directions_[2][lane]};
+  }
+  /// Finds the kernels that reach within `length` of p.
+  void gather(const Point3d& p, float length) {
+    if (p == gathered_ && length == gathered_length_) return;
+    gathered_ = p;
+    gathered_length_ = length;
+    const float factor = constants_.fields[f_].support_factor;
+    const Point3f near(static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z));
+    local_.size = 0;
+    distance_.clear();
+    traverse(
+        kernels_.bvh,
+        [&](const Bvh::Node& node) { return children_within(node, near, length, factor); },
+        [&](std::size_t leaf) { add_leaf(leaf, p, length); });
+  }
+
   void add_leaf(std::size_t leaf, const Point3d& p, float length) {
     const FieldConstants& field = constants_.fields[f_];
     const std::size_t begin = leaf * Bvh::leaf_size;
@@ -99,12 +126,12 @@ class Surroundings {
     local_.reserve(Bvh::leaf_size);
     for (std::size_t i = begin; i < end; ++i) {
       if (kernels_.field_of(i) != f_) continue;
-      const auto x = static_cast<float>(kernels_.x[i] - p.x);
-      const auto y = static_cast<float>(kernels_.y[i] - p.y);
-      const auto z = static_cast<float>(kernels_.z[i] - p.z);
+      const Point3d center{kernels_.x[i], kernels_.y[i], kernels_.z[i]};
       const float radius = kernels_.radius[i], support = 1.00001f * field.support_factor * radius;
-      const float distance = std::sqrt(x * x + y * y + z * z);
-      if (distance > support + length) continue;
+      if (motes::length(center - p) > static_cast<double>(support) + length) continue;
+      const Vector3d from_start = center - start_;
+      const auto x = static_cast<float>(from_start.x), y = static_cast<float>(from_start.y),
+                 z = static_cast<float>(from_start.z);
       const std::size_t at = local_.size++;
       local_.x[at] = x;
       local_.y[at] = y;
@@ -112,16 +139,21 @@ class Surroundings {
       local_.support[at] = support;
       local_.scale[at] = distance_scale_ / (radius * radius);
       local_.peak[at] = field.peak_factor * kernels_.weight[i];
-      distance_.push_back(distance);
+      distance_.push_back(std::sqrt(x * x + y * y + z * z));
     }
   }
 
   const KernelSet& kernels_;
   const SamplingConstants& constants_;
   std::size_t f_;
+  Point3d start_;
   float distance_scale_ = 1;
+  Point3d gathered_;            ///< what the local kernels reach
+  float gathered_length_ = -1;  ///< around that; negative: there are none yet
   LocalKernels local_;
   alignas(64) float directions_[3][max_lanes];
+  Vector3d middle_;              ///< of the directions
+  double spread_ = 0;            ///< how far they are from it at most
   std::vector<float> distance_;  ///< of each local kernel's centre
 };
 
@@ -143,10 +175,17 @@ void prune_by_field(const IsosurfaceFrame& frame, Field& surroundings,
     for (std::size_t l = 0; l < there; ++l) {
       for (int i = 0; i < 3; ++i) lanes[i][l] = directions[first + l][i];
     }
-    surroundings.look_along(lanes);
+    surroundings.look_along(lanes, there);
+    // Long ways in pieces, so that each sample meets but the kernels near it.
+    constexpr int piece = 16;
+    surroundings.enter(0, spacing * static_cast<float>(std::min(piece, count)));
     Lanes before = surroundings.evaluate(0);
     unsigned open = (1u << there) - 1;
     for (int i = 1; i <= count && open != 0; ++i) {
+      if (i > piece && i % piece == 1) {
+        surroundings.enter(spacing * static_cast<float>(i - 1),
+                           spacing * static_cast<float>(std::min(i - 1 + piece, count)));
+      }
       const Lanes value = surroundings.evaluate(spacing * static_cast<float>(i));
       for (const IsosurfaceLevel& level : field.levels) {
         if (level.opacity < 1) continue;

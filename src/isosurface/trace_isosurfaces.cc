@@ -107,13 +107,28 @@ void trace_grid(const IsosurfaceFrame& frame, const RayGrid& grid,
   }
 }
 
+/// How far the longest of the ways out of a box is that lead from p along `directions`; 0 if p is
+/// outside of it.
+double way_out(const Bounds3d& box, const Point3d& p, const std::vector<Vector3f>& directions) {
+  double farthest = 0;
+  for (const Vector3f& direction : directions) {
+    double way = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < 3; ++i) {
+      const double along = static_cast<double>(direction[i]);
+      if (along != 0) way = std::min(way, ((along > 0 ? box.max[i] : box.min[i]) - p[i]) / along);
+    }
+    farthest = std::max(farthest, way);
+  }
+  return farthest;
+}
+
 void prune_directions(const IsosurfaceFrame& frame, const Point3d& place, const Vector3d& normal,
                       double length, std::vector<Vector3f>& directions) {
   const SamplingConstants constants = make_constants(*frame.kernels);
   // Off the surface, so that rounding does not tell on which side of it a ray begins.
   constexpr double steps_off = 0.05;
   const Point3d start = place + steps_off * frame.planes.step * normal;
-  const auto reach = static_cast<float>(std::min(length, frame.reach));
+  const auto reach = static_cast<float>(std::min(length, way_out(frame.box, start, directions)));
   for (const FieldIsosurfaces& field : frame.fields) {
     const bool hides = std::any_of(field.levels.begin(), field.levels.end(),
                                    [](const IsosurfaceLevel& level) { return level.opacity >= 1; });
@@ -122,8 +137,7 @@ void prune_directions(const IsosurfaceFrame& frame, const Point3d& place, const 
         GridSurroundings surroundings(*field.grid, start);
         prune_by_field(frame, surroundings, field, start, reach, directions);
       } else {
-        Surroundings surroundings(*frame.kernels, constants, field.field);
-        surroundings.enter(start, reach);
+        Surroundings surroundings(*frame.kernels, constants, field.field, start);
         prune_by_field(frame, surroundings, field, start, reach, directions);
       }
     }

@@ -71,11 +71,11 @@ ShadedIsosurfaces make_isosurfaces(const ResolvedScene& scene, const FrameContex
   frame.planes = context.view.planes;
   // About five small radii: as far as crevices hide the light of their walls.
   constexpr double default_reach = 10;  // steps
-  frame.reach =
-      std::min(std::isfinite(shading.occlusion_distance) ? shading.occlusion_distance
-                                                         : default_reach * frame.planes.step,
-               length(context.box.diagonal()));
+  frame.box = context.box;
   isosurfaces.light = make_light_frame(frame.view, plane, shading);
+  if (!std::isfinite(shading.occlusion_distance)) {
+    isosurfaces.light.prune_distance = default_reach * frame.planes.step;
+  }
   frame.last_plane = plane_behind(context.view, context.box);
   frame.clip_planes = context.clip_planes;
   for (std::size_t i = 0; i < scene.isosurfaces.size(); ++i) {

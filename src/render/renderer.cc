@@ -382,6 +382,7 @@ void Renderer::render(const ResolvedScene& scene, const RenderOptions& options, 
       if (solids) {
         isosurfaces->light.surface = solids->surface;
         solids->prune = isosurfaces->light.prune;
+        solids->prune_distance = isosurfaces->light.prune_distance;
       }
     }
     if (surfaces.any() && !context.layers) {

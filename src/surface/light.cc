@@ -1,5 +1,6 @@
 #include "surface/light.h"
 
+#include <algorithm>
 #include <span>
 
 #include "surface/directions.h"
@@ -16,10 +17,11 @@ bool has_soft_shadows(const SurfaceShading& shading) {
   return has_shadows(shading) && shading.light_radius > 0;
 }
 
-/// How many of the directions are free up to `length`; they are left in any state.
+/// How many of the directions are free up to `length`, or of what is pruned, `prune_length`; they
+/// are left in any state.
 int count_free(const SurfaceFrame& frame, SurfacePoint from, const Vector3d& normal, double length,
-               std::vector<Vector3f>& directions) {
-  if (frame.prune) frame.prune(from.place, normal, length, directions);
+               double prune_length, std::vector<Vector3f>& directions) {
+  if (frame.prune) frame.prune(from.place, normal, prune_length, directions);
   if (frame.surface == nullptr) return static_cast<int>(directions.size());
   if (from.particle == no_particle) from.stick = no_stick;
   return num_unoccluded(*frame.surface, from, directions, length);
@@ -38,9 +40,9 @@ bool has_hard_shadows(const SurfaceShading& shading) {
 Light light_of(const SurfaceFrame& frame, const Spot& spot, int number,
                std::vector<Vector3f>& scratch) {
   const SurfaceShading& shading = frame.shading;
-  const auto free_part = [&](int count, double length) {
-    return static_cast<float>(count_free(frame, spot.point, spot.normal, length, scratch)) /
-           static_cast<float>(count);
+  const auto free_part = [&](int count, double length, double prune_length) {
+    const int free = count_free(frame, spot.point, spot.normal, length, prune_length, scratch);
+    return static_cast<float>(free) / static_cast<float>(count);
   };
   Light light;
   if (shading.occlusion_samples > 0) {
@@ -50,14 +52,16 @@ Light light_of(const SurfaceFrame& frame, const Spot& spot, int number,
       const Vector3d d(direction);
       scratch.emplace_back(d.x * sides.x + d.y * sides.y + d.z * spot.normal);
     }
-    light.sky = free_part(shading.occlusion_samples, shading.occlusion_distance);
+    const double distance = shading.occlusion_distance;
+    light.sky =
+        free_part(shading.occlusion_samples, distance, std::min(distance, frame.prune_distance));
   }
   if (has_soft_shadows(shading)) {
     scratch.clear();
     for (const Vector3f& direction : directions_of(frame.lamp, number)) {
       if (dot(Vector3d(direction), spot.normal) > 0) scratch.push_back(direction);
     }
-    light.lamp = free_part(shading.shadow_samples, infinity);
+    light.lamp = free_part(shading.shadow_samples, infinity, infinity);
   }
   return light;
 }
@@ -67,7 +71,7 @@ float hard_light(const SurfaceFrame& frame, const SurfacePoint& point, const Vec
   const Vector3d& lamp = *frame.shading.lighting.direction;
   if (dot(lamp, normal) <= 0) return 0;
   scratch.assign(1, Vector3f(lamp));
-  return static_cast<float>(count_free(frame, point, normal, infinity, scratch));
+  return static_cast<float>(count_free(frame, point, normal, infinity, infinity, scratch));
 }
 
 }  // namespace motes

@@ -58,6 +58,8 @@ struct SurfaceFrame {
   /// and about the direction of the light in world axes.
   std::vector<Vector3f> sky, lamp;
   Pruner prune;  ///< what else hides the light; may be empty
+  /// From how far that hides the sky; internal length.
+  double prune_distance = std::numeric_limits<double>::infinity();
 };
 
 /// In the surface's own colours.

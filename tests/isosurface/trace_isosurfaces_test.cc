@@ -293,5 +293,60 @@ TEST(Isosurface, MixesTheColoursOfParticlesByTheirKernels) {
   }
 }
 
+TEST(Isosurface, HidesLightFromFarAway) {
+  // Kernels 60 radii apart; each alone is a ball at value 0.5.
+  const ParticleSet particles = particles_at({{0, 0, 0}, {60, 0, 0}, {0, 60, 0}});
+  Kernel kernel;
+  kernel.support_factor = 4;
+  const FieldSource field = field_of_all(particles, 1, 1, kernel);
+  const KernelSet kernels = build_kernel_set(particles, {field});
+  const double scale = kernels.length_scale;
+  const auto internal = [&](const Point3d& p) { return Point3d{} + scale * (p - kernels.origin); };
+  IsosurfaceFrame frame;
+  frame.kernels = &kernels;
+  frame.planes = {0, 0.2 * scale};
+  frame.box = {internal(kernels.box().min), internal(kernels.box().max)};
+  const auto value = static_cast<float>(0.5 * kernels.fields[0].value_scale);
+  frame.fields = {{0, {{0, value, 1, {{1, 1, 1}}}}, {}}};
+  const double ball = std::sqrt(-2 * std::log(0.5));
+  const Vector3d normal{std::sqrt(0.5), std::sqrt(0.5), 0};
+  const Point3d place = Point3d{} + ball * normal;
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> aside(-0.06, 0.06);
+  for (const std::string& target : instruction_sets()) {
+    force_instruction_set(target);
+    int hidden = 0, open = 0;
+    for (int i = 0; i < 200; ++i) {
+      // A few at once, as for soft shadows; alternately towards one or both of the others.
+      std::vector<Vector3f> directions;
+      std::vector<Vector3f> expected;
+      for (int k = 0; k < 5; ++k) {
+        const bool first = i % 2 == 0 || k < 2;
+        const Point3d far = first ? Point3d{60, 0, 0} : Point3d{0, 60, 0};
+        const Vector3d d = normalize(normalize(far - place) +
+                                     Vector3d{aside(random), aside(random), aside(random)});
+        const Vector3d to = far - place;
+        const double distance = length(to - dot(to, d) * d);
+        // Samples 0.3 apart may miss what is grazed by less than that.
+        if (distance > 0.97 * ball && distance < 1.03 * ball) continue;
+        directions.emplace_back(d);
+        if (distance > ball) expected.emplace_back(d);
+      }
+      hidden += static_cast<int>(directions.size() - expected.size());
+      open += static_cast<int>(expected.size());
+      const std::vector<Vector3f> all = directions;
+      prune(frame, internal(place), normal, std::numeric_limits<double>::infinity(), directions);
+      EXPECT_EQ(directions, expected) << target << ", " << i;
+      // Not from beyond the length that is asked for.
+      directions = all;
+      prune(frame, internal(place), normal, 55 * scale, directions);
+      EXPECT_EQ(directions, all) << target << ", " << i;
+    }
+    EXPECT_GT(hidden, 50);
+    EXPECT_GT(open, 50);
+  }
+  force_instruction_set("");
+}
+
 }  // namespace
 }  // namespace motes

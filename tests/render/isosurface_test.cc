@@ -96,6 +96,19 @@ TEST(Isosurface, HidesTheLightOfWhatIsWithinButForWhatIsCutAway) {
   }
 }
 
+TEST(Isosurface, ThatIsTranslucentTakesNoLight) {
+  PlainScene s = one_kernel();
+  s.scene.transfer_functions = {{{{0, {}, 0}}}};
+  s.scene.render.surface = {3, 64, {}, true, 5};
+  s.scene.render.lighting.direction = Vector3d{1, 1, 1};
+  s.scene.camera.eye = {0, 0, 7};
+  const Renderer renderer(s.particles, s.scene.fields, ball(0.8F, 0xffffff));
+  const Framebuffer alone = renderer.render(s.scene, {});
+  // A shell that is not seen itself: the ball within is as bright as without it.
+  s.scene.isosurfaces = {{0, 0.5, 0, {{1, 1, 1}}}};
+  EXPECT_LE(compare_images(renderer.render(s.scene, {}), alone).max, 1e-5);
+}
+
 TEST(Isosurface, HasNoShadowsOfItsOwnWhereItIsConvex) {
   PlainScene s = one_kernel();
   s.scene.transfer_functions = {{{{0, {}, 0}}}};
