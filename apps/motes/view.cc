@@ -100,8 +100,9 @@ void add_view_command(CLI::App& program) {
       ->type_name("");
   command->add_option("--port", server.port, "port to listen on (default: one that is free)")
       ->type_name("PORT");
-  command->add_option("--address", server.address,
-                      "address to listen on (default: 127.0.0.1, this machine alone)")
+  command
+      ->add_option("--address", server.address,
+                   "address to listen on (default: 127.0.0.1, this machine alone)")
       ->type_name("ADDRESS");
   command
       ->add_option("--folder", options->folder,

@@ -63,8 +63,8 @@ bool equal_in_constant_time(std::string_view a, std::string_view b) {
 }
 
 std::string host_name(std::string_view authority) {
-  const auto colon = authority.starts_with('[') ? authority.find(':', authority.find(']'))
-                                                : authority.find(':');
+  const auto colon =
+      authority.starts_with('[') ? authority.find(':', authority.find(']')) : authority.find(':');
   if (colon != authority.npos && !is_port(authority.substr(colon + 1))) return "";
   return without_brackets(authority.substr(0, colon));
 }

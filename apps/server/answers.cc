@@ -28,9 +28,8 @@ json or_null(const std::optional<T>& value) {
 }
 
 json to_json(const Camera& camera) {
-  json out{{"eye", to_json(camera.eye)},
-           {"target", to_json(camera.target)},
-           {"up", to_json(camera.up)}};
+  json out{
+      {"eye", to_json(camera.eye)}, {"target", to_json(camera.target)}, {"up", to_json(camera.up)}};
   if (camera.orthographic_height) {
     out["orthographic"] = *camera.orthographic_height;
   } else {
@@ -69,9 +68,8 @@ json data_of(const DataInfo& info, std::optional<std::size_t> frames) {
         {{"name", species.name}, {"count", species.count}, {"color", hex(species.srgb)}});
   }
   for (const PropertyInfo& property : info.properties) {
-    data["properties"].push_back({{"name", property.name},
-                                  {"min", or_null(property.min)},
-                                  {"max", or_null(property.max)}});
+    data["properties"].push_back(
+        {{"name", property.name}, {"min", or_null(property.min)}, {"max", or_null(property.max)}});
   }
   if (const auto& cell = info.cell) {
     data["cell"] = {to_json(cell->vectors[0]), to_json(cell->vectors[1]),
@@ -138,12 +136,9 @@ std::string warnings_text(const Warnings& warnings) {
 std::string picked_text(std::uint32_t sequence, const std::optional<Pick>& pick) {
   json message{{"type", "picked"}, {"sequence", sequence}, {"hit", nullptr}};
   if (!pick) return text_of(message);
-  json hit{{"index", pick->index},
-           {"id", or_null(pick->id)},
-           {"species", nullptr},
-           {"position", to_json(pick->position)},
-           {"distance", pick->distance},
-           {"properties", json::object()},
+  json hit{{"index", pick->index},       {"id", or_null(pick->id)},
+           {"species", nullptr},         {"position", to_json(pick->position)},
+           {"distance", pick->distance}, {"properties", json::object()},
            {"values", json::object()}};
   if (!pick->species.empty()) hit["species"] = pick->species;
   for (const auto& [name, value] : pick->properties) hit["properties"][name] = value;
@@ -167,12 +162,9 @@ std::string clients_text(const std::map<ClientId, std::optional<ClientId>>& foll
 std::string histogram_text(const std::vector<Histogram>& histograms) {
   json fields = json::array();
   for (const Histogram& histogram : histograms) {
-    json field{{"name", histogram.name},
-               {"min", histogram.min},
-               {"max", histogram.max},
-               {"counts", histogram.counts},
-               {"log_counts", nullptr},
-               {"positive_min", or_null(histogram.positive_min)}};
+    json field{{"name", histogram.name}, {"min", histogram.min},
+               {"max", histogram.max},   {"counts", histogram.counts},
+               {"log_counts", nullptr},  {"positive_min", or_null(histogram.positive_min)}};
     if (histogram.positive_min) field["log_counts"] = histogram.log_counts;
     fields.push_back(std::move(field));
   }

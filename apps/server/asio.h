@@ -2,6 +2,12 @@
 // heavy.
 #pragma once
 
+// Clang has coroutines too, but not where Boost 1.74 looks for them.
+#if defined(__clang__) && !defined(BOOST_ASIO_HAS_CO_AWAIT)
+#define BOOST_ASIO_HAS_CO_AWAIT 1
+#define BOOST_ASIO_HAS_STD_COROUTINE 1
+#endif
+
 #include <utility>  // what Boost 1.74's awaitable.hpp needs and does not include
 
 #include <boost/asio/awaitable.hpp>

@@ -30,7 +30,6 @@ constexpr auto answer_timeout = 120s;
 constexpr auto leave_timeout = 3s;
 constexpr std::uint32_t max_header_bytes = 16384;
 
-
 /// The refusal, or where the request leads.
 struct Admission {
   std::optional<Target> target;
@@ -50,11 +49,13 @@ Admission admit(const Site& site, const Socket::Request& request) {
   auto target = parse_target({text.data(), text.size()});
   if (!target) return {{}, http::status::bad_request, "expected a path"};
   if (!equal_in_constant_time(target->parameter("token"), site.token)) {
-    return {{}, http::status::forbidden,
+    return {{},
+            http::status::forbidden,
             "the token is missing or wrong: open the address that motes view has printed"};
   }
   const std::string& base = site.options.base_url;  // "/" or "/name/"
-  if (!target->path.starts_with(base)) return {{}, http::status::not_found, "there is no such page"};
+  if (!target->path.starts_with(base))
+    return {{}, http::status::not_found, "there is no such page"};
   target->path.erase(0, base.size() - 1);
   return {std::move(target), {}, ""};
 }
@@ -142,7 +143,8 @@ Answer page_answer() {
   return answer;
 }
 
-asio::awaitable<Answer> answer_to(const Target& target, http::request_parser<http::empty_body>& parser,
+asio::awaitable<Answer> answer_to(const Target& target,
+                                  http::request_parser<http::empty_body>& parser,
                                   beast::tcp_stream& stream, beast::flat_buffer& buffer,
                                   Site& site) {
   const http::verb method = parser.get().method();
@@ -179,8 +181,8 @@ asio::awaitable<void> send(beast::tcp_stream& stream, Answer answer, unsigned ve
   }
 }
 
-/// Ends a connection so that its last answer arrives: what a client still sends, such as a body that
-/// is refused, is read for a while, since the system would else take back the answer.
+/// Ends a connection so that its last answer arrives: what a client still sends, such as a body
+/// that is refused, is read for a while, since the system would else take back the answer.
 asio::awaitable<void> take_leave(beast::tcp_stream& stream) {
   boost::system::error_code error;
   stream.socket().shutdown(asio::ip::tcp::socket::shutdown_send, error);

@@ -24,7 +24,8 @@ class Files {
   /// Lets clients name all files of a scene that the user has opened.
   void allow(const Scene& scene);
 
-  /// The file at `path`, relative to the folder or absolute. Throws Error as Folder::resolve() does.
+  /// The file at `path`, relative to the folder or absolute. Throws Error as Folder::resolve()
+  /// does.
   std::filesystem::path resolve(std::string_view path) const;
   /// Where a file that a client sends is put. Throws Error as Uploads does.
   std::filesystem::path place_for_upload(std::string_view name);

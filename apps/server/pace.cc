@@ -23,9 +23,7 @@ double in_steps(double scale) {
 
 }  // namespace
 
-double Pace::scale() const {
-  return in_steps(wish_);
-}
+double Pace::scale() const { return in_steps(wish_); }
 
 void Pace::took(double scale, double ms) {
   // Time goes with the pixels at worst. Down at once; up by little, since what is left in the
@@ -69,8 +67,8 @@ int Link::quality(std::size_t pixels) const {
 }
 
 void Link::encoded(std::size_t pixels, std::size_t bytes, int quality) {
-  bytes_per_pixel_ = static_cast<double>(bytes) / static_cast<double>(std::max<std::size_t>(pixels, 1)) /
-                     relative_size(quality);
+  bytes_per_pixel_ = static_cast<double>(bytes) /
+                     static_cast<double>(std::max<std::size_t>(pixels, 1)) / relative_size(quality);
 }
 
 }  // namespace motes::server

@@ -63,8 +63,7 @@ asio::awaitable<void> Socket::read_all(Receiver& receiver) {
       if (!rate_.take(RateLimit::Clock::now())) throw Error("too many messages");
       if (!stream_.got_text()) throw Error("expected text");
       const auto data = buffer.cdata();
-      receiver.receive(*this,
-                       parse_message({static_cast<const char*>(data.data()), data.size()}));
+      receiver.receive(*this, parse_message({static_cast<const char*>(data.data()), data.size()}));
     } catch (const Error& error_of_client) {
       close(close_malformed, error_of_client.what());
     }

@@ -134,9 +134,8 @@ bool Studio::make_next_picture(Clock::time_point now) {
   const auto after = viewers_.upper_bound(last_served_);
   for (auto it = after; it != viewers_.end(); ++it) consider(it);
   for (auto it = viewers_.begin(); it != after; ++it) consider(it);
-  const bool somebody_moves = std::any_of(viewers_.begin(), viewers_.end(), [now](const auto& v) {
-    return v.second.is_moving(now);
-  });
+  const bool somebody_moves = std::any_of(viewers_.begin(), viewers_.end(),
+                                          [now](const auto& v) { return v.second.is_moving(now); });
   if (!plan || (somebody_moves && !plan->moving)) return false;
   last_served_ = best->first;
   make_picture(best->second, *plan);

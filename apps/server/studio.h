@@ -28,10 +28,10 @@ namespace motes::server {
 
 /// Something to look at.
 struct Opening {
-  std::string name;              ///< for people
-  std::function<Scene()> scene;  ///< called on the loader's thread; throws Error
-  std::optional<ClientId> client = {};           ///< who asked for it
-  std::optional<std::uint32_t> sequence = {};    ///< by which "scene" message, if by one
+  std::string name;                            ///< for people
+  std::function<Scene()> scene;                ///< called on the loader's thread; throws Error
+  std::optional<ClientId> client = {};         ///< who asked for it
+  std::optional<std::uint32_t> sequence = {};  ///< by which "scene" message, if by one
 };
 
 /// A picture to be saved.
@@ -133,12 +133,12 @@ class Studio {
   };
   std::optional<Prefetched> prefetched_;
   std::optional<std::uint64_t> prefetching_;
-  std::optional<std::size_t> frames_;  ///< of the document's file, once they are counted
-  std::shared_ptr<FrameReader> reader_;  ///< for the lookahead's thread alone
+  std::optional<std::size_t> frames_;      ///< of the document's file, once they are counted
+  std::shared_ptr<FrameReader> reader_;    ///< for the lookahead's thread alone
   const std::atomic<bool> never_ = false;  ///< cancels nothing
-  std::uint64_t opening_ = 0;  ///< counts openings: what an older one brings is dropped
+  std::uint64_t opening_ = 0;              ///< counts openings: what an older one brings is dropped
 
-  Loader loader_;    ///< opens
+  Loader loader_;     ///< opens
   Loader lookahead_;  ///< reads what may be wanted next
   std::thread thread_;
 };

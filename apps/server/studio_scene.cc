@@ -111,11 +111,9 @@ void Studio::change_scene(ClientId client, std::uint32_t sequence, const Scene& 
   }
   const std::uint64_t frame_before = document_->scene().frame;
   Warnings warnings;
-  LoadProgress progress(
-      [this](std::string_view activity, double fraction) {
-        send_to_all(progress_text(activity, fraction));
-      },
-      never_);
+  LoadProgress progress([this](std::string_view activity,
+                               double fraction) { send_to_all(progress_text(activity, fraction)); },
+                        never_);
   const auto error = error_of([&] {
     if (prefetched_ && prefetched_->frame == scene.frame && scene.frame != frame_before) {
       ParticleSet particles = std::move(prefetched_->particles);
@@ -139,20 +137,20 @@ void Studio::prefetch(std::uint64_t frame) {
   if (frame >= *frames_) frame = 0;  // a loop begins anew
   prefetching_ = frame;
   lookahead_.cancel();
-  lookahead_.add([this, reader = reader_, frame, number = opening_](
-                     const std::atomic<bool>& cancelled) {
-    LoadProgress progress([](std::string_view, double) {}, cancelled);
-    Warnings warnings;
-    auto particles = std::make_shared<ParticleSet>();
-    if (error_of([&] { *particles = reader->read_frame(frame, &progress, warnings); })) {
-      return;  // told when it is really wanted
-    }
-    post(
-        [this, frame, particles, number] {
-          if (number == opening_) prefetched_ = Prefetched{frame, std::move(*particles)};
-        },
-        false);
-  });
+  lookahead_.add(
+      [this, reader = reader_, frame, number = opening_](const std::atomic<bool>& cancelled) {
+        LoadProgress progress([](std::string_view, double) {}, cancelled);
+        Warnings warnings;
+        auto particles = std::make_shared<ParticleSet>();
+        if (error_of([&] { *particles = reader->read_frame(frame, &progress, warnings); })) {
+          return;  // told when it is really wanted
+        }
+        post(
+            [this, frame, particles, number] {
+              if (number == opening_) prefetched_ = Prefetched{frame, std::move(*particles)};
+            },
+            false);
+      });
 }
 
 }  // namespace motes::server

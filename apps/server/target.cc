@@ -43,8 +43,7 @@ std::optional<Target> parse_target(std::string_view text) {
     rest.remove_prefix(std::min(pair.size() + 1, rest.size()));
     const auto equals = pair.find('=');
     const auto name = decode(pair.substr(0, equals));
-    const auto value =
-        decode(equals == pair.npos ? std::string_view() : pair.substr(equals + 1));
+    const auto value = decode(equals == pair.npos ? std::string_view() : pair.substr(equals + 1));
     if (!name || !value) return {};
     target.query.emplace(*name, *value);
   }

@@ -88,7 +88,8 @@ asio::awaitable<Answer> take_upload(const Target& target,
     co_return text_answer(http::status::service_unavailable, "too many uploads at a time");
   }
   const Counted counted(site.num_uploads);
-  if (const auto length = header.content_length(); length && *length > site.options.max_upload_bytes) {
+  if (const auto length = header.content_length();
+      length && *length > site.options.max_upload_bytes) {
     co_return text_answer(http::status::payload_too_large, "the file is too large");
   }
   try {
@@ -103,7 +104,8 @@ asio::awaitable<Answer> take_upload(const Target& target,
     co_await copy_body(parser, stream, buffer, file);
     file.keep();
     const nlohmann::json path{{"path", place.string()}};
-    co_return Answer{http::status::ok, "application/json",
+    co_return Answer{http::status::ok,
+                     "application/json",
                      path.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n",
                      {}};
   } catch (const Error& error) {

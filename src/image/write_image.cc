@@ -32,8 +32,9 @@ std::string encode_image(ImageFormat format, const Framebuffer& framebuffer,
     case ImageFormat::npy:
       break;
   }
-  return npy_header(framebuffer).append(reinterpret_cast<const char*>(framebuffer.rgba.data()),
-                                        framebuffer.rgba.size() * sizeof(float));
+  return npy_header(framebuffer)
+      .append(reinterpret_cast<const char*>(framebuffer.rgba.data()),
+              framebuffer.rgba.size() * sizeof(float));
 }
 
 void write_image(AtomicFile& file, ImageFormat format, const Framebuffer& framebuffer,

@@ -15,8 +15,8 @@ enum class ImageFormat { png, jpeg, exr, npy };
 /// By suffix: .png, .jpg or .jpeg, .exr, .npy, in any case. Throws Error for others.
 ImageFormat image_format(const std::filesystem::path& path);
 
-/// The bytes of a file of that format. PNG and JPEG show `framebuffer` as to_display() does; EXR and
-/// NPY hold it as it is.
+/// The bytes of a file of that format. PNG and JPEG show `framebuffer` as to_display() does; EXR
+/// and NPY hold it as it is.
 std::string encode_image(ImageFormat format, const Framebuffer& framebuffer,
                          double termination_opacity, const Color& background);
 

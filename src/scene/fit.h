@@ -28,7 +28,8 @@ std::vector<VisibleSphere> visible_spheres(const ParticleSet& particles,
 /// `aspect` = width / height. The view is oblique, mostly along their box's thinnest axis, so that
 /// its largest face is seen; y is up, or z where the view is mostly along y or x. Strays do not
 /// count: at most one sphere in a thousand, so far away that the others would be small for it.
-/// Precondition: there are spheres, or eye, target and up are given. Throws Error as camera_axes() does.
+/// Precondition: there are spheres, or eye, target and up are given. Throws Error as camera_axes()
+/// does.
 Camera fit_camera(const Scene& scene, const std::vector<VisibleSphere>& spheres, double aspect);
 
 /// Half of a small radius: of what all fields' Gaussians cover in a picture (radius squared), 5 %

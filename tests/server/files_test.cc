@@ -36,9 +36,7 @@ class FilesTest : public testing::Test {
   }
   ~FilesTest() override { fs::remove_all(root_); }
 
-  void write(const std::string& name) {
-    std::ofstream(root_ / name) << "1\n\nC 0 0 0\n";
-  }
+  void write(const std::string& name) { std::ofstream(root_ / name) << "1\n\nC 0 0 0\n"; }
   std::string secret() const { return (root_ / "secret.xyz").string(); }
 
   fs::path root_;
@@ -58,10 +56,11 @@ TEST_F(FilesTest, OutsideAreRefusedAsIfTheyWereNotThere) {
   const Files files(root_ / "shared");
   for (const std::string& path :
        {std::string("../secret.xyz"), secret(), std::string("link.xyz"),
-        std::string("up/secret.xyz"), std::string("sub/../../secret.xyz"), std::string("/etc/passwd"),
-        std::string("../shared2/other.xyz"), (root_ / "shared2/other.xyz").string(),
-        std::string("run.xyz\0.png", 12), std::string("absent.xyz"), std::string("dangling"),
-        std::string("%2e%2e/secret.xyz"), std::string("..\\secret.xyz"), std::string("~/x")}) {
+        std::string("up/secret.xyz"), std::string("sub/../../secret.xyz"),
+        std::string("/etc/passwd"), std::string("../shared2/other.xyz"),
+        (root_ / "shared2/other.xyz").string(), std::string("run.xyz\0.png", 12),
+        std::string("absent.xyz"), std::string("dangling"), std::string("%2e%2e/secret.xyz"),
+        std::string("..\\secret.xyz"), std::string("~/x")}) {
     try {
       files.resolve(path);
       FAIL() << path;
@@ -87,12 +86,14 @@ TEST_F(FilesTest, OfScenesAreHeldToTheSame) {
   const Scene good = files.parse_scene(R"({"version":1,"data":{"path":"sub/a b.xyz"}})", shared);
   EXPECT_EQ(good.data_path, shared / "sub/a b.xyz");
   for (const std::string& part :
-       {"\"data\":{\"path\":\"" + secret() + "\"}", std::string(R"("data":{"path":"../secret.xyz"})"),
-        "\"data\":{\"path\":\"run.xyz\"},\"kernel\":{\"type\":\"tabulated\",\"path\":\"" + secret() +
-            "\"}",
+       {"\"data\":{\"path\":\"" + secret() + "\"}",
+        std::string(R"("data":{"path":"../secret.xyz"})"),
+        "\"data\":{\"path\":\"run.xyz\"},\"kernel\":{\"type\":\"tabulated\",\"path\":\"" +
+            secret() + "\"}",
         "\"data\":{\"path\":\"run.xyz\"},\"fields\":[{\"grid\":\"" + secret() + "\"}]",
         "\"data\":{\"path\":\"run.xyz\"},\"fields\":[{\"grid\":{\"path\":\"" + secret() + "\"}}]",
-        "\"data\":{\"path\":\"run.xyz\"},\"fields\":[{\"kernel\":{\"type\":\"tabulated\",\"path\":\"" +
+        "\"data\":{\"path\":\"run.xyz\"},\"fields\":[{\"kernel\":{\"type\":\"tabulated\",\"path\":"
+        "\"" +
             secret() + "\"}}]"}) {
     try {
       files.parse_scene("{\"version\":1," + part + "}", shared);

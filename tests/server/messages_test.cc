@@ -18,7 +18,8 @@ TEST(Messages, AreRead) {
                                      std::string(camera) + "}");
   EXPECT_EQ(std::get<ViewMessage>(view).sequence, 7U);
   EXPECT_TRUE(std::get<ViewMessage>(view).moving);
-  EXPECT_EQ(std::get<ViewMessage>(view).camera, (Camera{{0, 0, -80}, {0, 0, 0}, {0, 1, 0}, 45, {}}));
+  EXPECT_EQ(std::get<ViewMessage>(view).camera,
+            (Camera{{0, 0, -80}, {0, 0, 0}, {0, 1, 0}, 45, {}}));
 
   const Message size = parse_message(R"({"type":"size","width":640,"height":480})");
   EXPECT_EQ(std::get<SizeMessage>(size).width, 640);
@@ -27,8 +28,7 @@ TEST(Messages, AreRead) {
   const Message scene = parse_message(R"({"type":"scene","sequence":1,"scene":{"version":1}})");
   EXPECT_EQ(std::get<SceneMessage>(scene).scene, R"({"version":1})");
 
-  EXPECT_FALSE(
-      std::get<FollowMessage>(parse_message(R"({"type":"follow","client":null})")).client);
+  EXPECT_FALSE(std::get<FollowMessage>(parse_message(R"({"type":"follow","client":null})")).client);
   EXPECT_EQ(std::get<FollowMessage>(parse_message(R"({"type":"follow","client":3})")).client, 3U);
   EXPECT_EQ(std::get<ListMessage>(parse_message(R"({"type":"list","path":""})")).path, "");
   EXPECT_TRUE(std::holds_alternative<FitMessage>(parse_message(R"({"type":"fit"})")));

@@ -88,8 +88,7 @@ class TestClient {
  public:
   explicit TestClient(const RunningServer& server, const std::string& token = "")
       : socket_(context_) {
-    beast::get_lowest_layer(socket_).connect(
-        {asio::ip::make_address("127.0.0.1"), server.port()});
+    beast::get_lowest_layer(socket_).connect({asio::ip::make_address("127.0.0.1"), server.port()});
     socket_.set_option(websocket::stream_base::decorator([](websocket::request_type& request) {
       request.set(http::field::origin, "http://127.0.0.1");
     }));

@@ -32,8 +32,7 @@ TEST(Server, KnowsItsNamesAndItsOwnPages) {
   const std::string page = "/?token=" + server.token();
   EXPECT_EQ(request(server, http::verb::get, page).status, 200);
   EXPECT_EQ(request(server, http::verb::get, page, "", "evil.com").status, 403);
-  EXPECT_EQ(
-      request(server, http::verb::get, page, "", "127.0.0.1", "http://evil.com").status, 403);
+  EXPECT_EQ(request(server, http::verb::get, page, "", "127.0.0.1", "http://evil.com").status, 403);
 }
 
 TEST(Server, GivesThePageUnderAStrictPolicy) {
@@ -71,9 +70,9 @@ TEST(Server, ShowsTheSceneAndThenTheFullPicture) {
   EXPECT_EQ(TestClient::number(frame, 20), 64U);
   EXPECT_EQ(TestClient::number(frame, 24), 48U);
   // The picture that is saved is the one that is seen.
-  const Reply picture = request(server, http::verb::get,
-                                "/picture?client=1&width=64&height=48&format=png&token=" +
-                                    server.token());
+  const Reply picture =
+      request(server, http::verb::get,
+              "/picture?client=1&width=64&height=48&format=png&token=" + server.token());
   EXPECT_EQ(picture.status, 200);
   EXPECT_EQ(picture.body, frame.substr(36));
 }
