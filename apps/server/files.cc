@@ -63,7 +63,7 @@ void Files::allow(const Scene& scene) {
 fs::path Files::resolve(std::string_view path) const {
   if (path.starts_with('/') && path.find('\0') == path.npos) {
     std::error_code error;
-    const fs::path found = fs::canonical(fs::path(std::string(path)), error);
+    fs::path found = fs::canonical(fs::path(std::string(path)), error);
     const std::lock_guard lock(mutex_);
     if (!error && allowed_.contains(found)) return found;
   }
@@ -72,7 +72,7 @@ fs::path Files::resolve(std::string_view path) const {
 
 fs::path Files::place_for_upload(std::string_view name) {
   const std::lock_guard lock(mutex_);
-  const fs::path place = uploads_.place_for(name);
+  fs::path place = uploads_.place_for(name);
   allowed_.insert(place);
   return place;
 }

@@ -42,9 +42,9 @@ fs::path Folder::resolve(std::string_view path) const {
   const std::string shown = printable(path, 400);
   std::error_code error;
   // An absolute path replaces the folder; the null byte would end it early for the system.
-  const fs::path found = path.find('\0') == path.npos
-                             ? fs::canonical(path_ / fs::path(std::string(path)), error)
-                             : fs::path();
+  fs::path found = path.find('\0') == path.npos
+                       ? fs::canonical(path_ / fs::path(std::string(path)), error)
+                       : fs::path();
   if (error || found.empty() || !contains(found) || !is_openable(found)) {
     throw Error(fmt::format("{}: there is no such file in the folder that is shared", shown));
   }

@@ -2,6 +2,7 @@
 #include "server/studio.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "core/error.h"
@@ -146,7 +147,7 @@ void Studio::make_picture(Viewer& viewer, const FramePlan& plan) {
   if (!begin(plan.moving ? UnderWay::moving : UnderWay::resting)) return;
   const Stopwatch stopwatch;
   const auto scaled = [&plan](int side) {
-    return std::max(1, static_cast<int>(side * plan.scale + 0.5));
+    return std::max(1, static_cast<int>(std::lround(side * plan.scale)));
   };
   try {
     // A moving picture that cannot be smaller is waited for, however late.

@@ -85,7 +85,7 @@ struct Document::Next {
   std::vector<Field> visible;
 };
 
-Document::Document(std::filesystem::path path, Scene scene)
+Document::Document(std::filesystem::path path, const Scene& scene)
     : path_(std::move(path)),
       data_path_(scene.data_path),
       types_(scene.types),
@@ -178,6 +178,7 @@ bool Document::keeps_kernels(const Next& next) const {
 Change Document::set_kernels(Next& next, Progress* progress) {
   std::vector<FieldSource>& sources = sources_;
   std::vector<Kernel> old;
+  old.reserve(sources.size());
   for (const FieldSource& source : sources) old.push_back(source.kernel);
   const auto set = [&](std::size_t f, const Kernel& kernel) {
     if (sources[f].grid || kernel == sources[f].kernel) return false;

@@ -129,7 +129,7 @@ class Document {
   const ParticleSet& particles() const { return particles_; }
 
  private:
-  Document(std::filesystem::path path, Scene scene);
+  Document(std::filesystem::path path, const Scene& scene);
 
   struct Next;
   /// What all set_scene() and set_frame() come to; `frame` is there if it is another one.

@@ -23,7 +23,7 @@ class RunningServer {
   explicit RunningServer(ServerOptions options = {})
       : folder_(make_folder()), options_(std::move(options)), files_(folder_) {
     server_.emplace(options_, studio_, files_);
-    const Scene scene = open_scene(folder_ / "atoms.xyz");
+    Scene scene = open_scene(folder_ / "atoms.xyz");
     studio_.open({"atoms.xyz", [scene] { return scene; }});
     thread_ = std::thread([this] { server_->run(); });
   }
@@ -43,7 +43,7 @@ class RunningServer {
  private:
   static std::filesystem::path make_folder() {
     std::string pattern = (std::filesystem::temp_directory_path() / "motes-server-XXXXXX").string();
-    const auto folder = std::filesystem::canonical(mkdtemp(pattern.data()));
+    auto folder = std::filesystem::canonical(mkdtemp(pattern.data()));
     std::ofstream(folder / "atoms.xyz") << "3\nframe 0\nO 0 0 0\nH 1 0 0\nH 0 1 0\n"
                                            "3\nframe 1\nO 0 0 1\nH 1 0 1\nH 0 1 1\n";
     std::ofstream(folder / "other.xyz") << "2\n\nC 0 0 0\nC 2 0 0\n";

@@ -53,7 +53,7 @@ class EagerOutlet : public Outlet {
 
 TEST(Studio, KeepsUpWithTwoHoursOfEvents) {
   const std::string data = MOTES_SOURCE_DIR "/data/demo/zeolite_mfi_3494.xyz";
-  const Scene scene = open_scene(data);
+  Scene scene = open_scene(data);
   Studio studio;
   const auto outlet = std::make_shared<EagerOutlet>(studio);
   studio.open({"zeolite", [scene] { return scene; }});
