@@ -102,7 +102,8 @@ TEST(Isosurface, LacksTheSkyThatALongMonteCarloRunLacks) {
   std::vector<Vector3f> scratch;
   double darkest = 1;
   for (const IsosurfaceHit& hit : hits) {
-    const double u = grid.u + hit.ray % 9 * grid.du, v = grid.v + hit.ray / 9 * grid.dv;
+    const std::uint32_t column = hit.ray % 9, row = hit.ray / 9;
+    const double u = grid.u + column * grid.du, v = grid.v + row * grid.dv;
     const CameraAxes& axes = scene.frame.view.axes;
     const Point3d place =
         scene.frame.view.eye + hit.depth * (axes.forward + u * axes.x + v * axes.y);

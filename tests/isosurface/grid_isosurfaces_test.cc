@@ -253,7 +253,8 @@ TEST(GridIsosurface, HidesTheLightOfWhatIsWithin) {
   grid->origin = {-4, -4, -4};
   grid->steps = {Vector3d{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   for (std::size_t i = 0; i < 729; ++i) {
-    grid->values.push_back(static_cast<float>(i / 81) - 4);
+    const std::size_t layer = i / 81;
+    grid->values.push_back(static_cast<float>(layer) - 4);
   }
   Case c;
   c.grid = grid;
