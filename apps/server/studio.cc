@@ -3,11 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <utility>
 
-#include "core/error.h"
 #include "core/stopwatch.h"
-#include "image/display.h"
 #include "server/answers.h"
 
 namespace motes::server {
@@ -87,7 +86,12 @@ bool Studio::run_tasks() {
       task = std::move(tasks_.front());
       tasks_.pop_front();
     }
-    task();
+    // What one client asks for, such as more memory than there is, must not end the others.
+    try {
+      task();
+    } catch (const std::exception& error) {
+      send_to_all(error_text({}, error.what()));
+    }
   }
 }
 
@@ -156,17 +160,17 @@ void Studio::make_picture(Viewer& viewer, const FramePlan& plan) {
                       plan.final ? FrameQuality{} : preview, breakable ? &break_off_ : nullptr,
                       image_, &statistics_);
     end();
+    const RenderSettings& settings = document_->scene().render;
+    viewer.send(plan, image_, settings.termination_opacity, settings.background,
+                stopwatch.milliseconds());
   } catch (const Cancelled&) {
     end();
-    return viewer.broken_off(plan, stopwatch.milliseconds());
-  } catch (const Error& error) {
+    viewer.broken_off(plan, stopwatch.milliseconds());
+  } catch (const std::exception& error) {  // Error, or not enough memory
     end();
     viewer.give_up();
-    return viewer.outlet().send_text(error_text({}, error.what()));
+    viewer.outlet().send_text(error_text({}, error.what()));
   }
-  const double ms = stopwatch.milliseconds();
-  const RenderSettings& settings = document_->scene().render;
-  viewer.send(plan, image_, settings.termination_opacity, settings.background, ms);
 }
 
 bool Studio::do_long_task() {
@@ -177,7 +181,12 @@ bool Studio::do_long_task() {
     long_tasks_.emplace_front(std::move(task), broken_off);
     return true;
   }
-  const bool done = task(broken_off < patience ? &break_off_ : nullptr);
+  bool done = true;
+  try {
+    done = task(broken_off < patience ? &break_off_ : nullptr);
+  } catch (const std::exception& error) {
+    send_to_all(error_text({}, error.what()));
+  }
   end();
   if (!done) long_tasks_.emplace_front(std::move(task), broken_off + 1);
   return true;

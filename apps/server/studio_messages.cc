@@ -121,6 +121,7 @@ void Studio::answer(ClientId client, Viewer& viewer, const Message& message) {
                    }
                    send_clients();
                  },
+                 [&](const CancelMessage&) { send_to_all(ready_text()); },
                  [](const auto&) {}},  // what is about files does not come here
       message);
 }

@@ -70,7 +70,6 @@ void Studio::adopt(const Opening& opening, std::shared_ptr<Document> document,
   prefetched_.reset();
   prefetching_.reset();
   lookahead_.cancel();
-  long_tasks_.clear();
   for (auto& [id, viewer] : viewers_) {
     viewer.look_anew(document_->camera());
     if (opening.client == id && opening.sequence) viewer.took_scene(*opening.sequence);

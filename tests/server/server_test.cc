@@ -147,6 +147,17 @@ TEST(Server, OpensFilesOfItsFolderAlone) {
   while (scene.at("data").at("particles") != 2) scene = client.wait_for("scene");
 }
 
+TEST(Server, AnswersACancelWhateverIsUnderWay) {
+  const RunningServer server;
+  TestClient client(server);
+  client.wait_for("scene");
+  client.send(R"({"type":"open","path":"other.xyz"})");
+  client.send(R"({"type":"cancel"})");
+  client.wait_for("ready");
+  client.send(R"({"type":"statistics"})");
+  client.wait_for("statistics");
+}
+
 TEST(Server, TakesUploadsUpToItsLimit) {
   ServerOptions options;
   options.max_upload_bytes = 1000;
