@@ -158,22 +158,28 @@ struct WendlandC6Shape : SumShape {
 template <class D, class V = hn::Vec<D>>
 struct TablePlaces {
   hn::Vec<hn::RebindToSigned<D>> segment;
-  V t, inverse_q;
+  V t;
+  V steepness;         ///< that of a cubic whose slope within the segment is -1
   hn::Mask<D> inside;  ///< of the support
 };
 
-template <class D, class V = hn::Vec<D>>
+template <bool kOfSquares, class D, class V = hn::Vec<D>>
 HWY_INLINE TablePlaces<D> find_places(D d, const RadialTable& table, V q_sq) {
-  const V inverse = inverse_sqrt(d, q_sq);
-  const V place = hn::Mul(hn::Mul(q_sq, inverse), hn::Set(d, table.segments_per_radius));
+  V q = q_sq, steepness = hn::Set(d, 2 * table.segments_per_unit);
+  if constexpr (!kOfSquares) {
+    const V inverse = inverse_sqrt(d, q_sq);
+    q = hn::Mul(q_sq, inverse);
+    steepness = hn::Mul(hn::Set(d, table.segments_per_unit), inverse);
+  }
+  const V place = hn::Mul(q, hn::Set(d, table.segments_per_unit));
   const V number = hn::Min(hn::Floor(place), hn::Set(d, table.last_segment));
-  return {hn::ConvertTo(hn::RebindToSigned<D>(), number), hn::Sub(place, number), inverse,
+  return {hn::ConvertTo(hn::RebindToSigned<D>(), number), hn::Sub(place, number), steepness,
           hn::Le(q_sq, hn::Set(d, table.support_sq))};
 }
 
 /// The cubics with coefficients c at their places.
 template <bool kSteepness, class D, class V = hn::Vec<D>>
-HWY_INLINE RadialLanes<V> cubic_at(D d, const RadialTable& table, const TablePlaces<D>& places,
+HWY_INLINE RadialLanes<V> cubic_at(D d, const TablePlaces<D>& places,
                                    const std::array<V, RadialTable::record_size>& c) {
   const V t = places.t;
   const V value = hn::MulAdd(t, hn::MulAdd(t, hn::MulAdd(t, c[3], c[2]), c[1]), c[0]);
@@ -181,8 +187,7 @@ HWY_INLINE RadialLanes<V> cubic_at(D d, const RadialTable& table, const TablePla
   if constexpr (kSteepness) {
     const V twice_c2 = hn::Add(c[2], c[2]), thrice_c3 = hn::Mul(hn::Set(d, -3.0f), c[3]);
     const V downwards = hn::MulSub(t, hn::MulSub(t, thrice_c3, twice_c2), c[1]);
-    const V per_radius = hn::Mul(hn::Set(d, table.segments_per_radius), places.inverse_q);
-    phi.steepness = hn::IfThenElseZero(places.inside, hn::Mul(downwards, per_radius));
+    phi.steepness = hn::IfThenElseZero(places.inside, hn::Mul(downwards, places.steepness));
   }
   return phi;
 }
@@ -192,51 +197,63 @@ struct TabulatedShape : SumShape {
 
   template <bool kSteepness, class D, class V = hn::Vec<D>>
   HWY_INLINE RadialLanes<V> at(D d, V q_sq) const {
-    const TablePlaces<D> places = find_places(d, *table, q_sq);
+    const TablePlaces<D> places = table->of_squares ? find_places<true>(d, *table, q_sq)
+                                                    : find_places<false>(d, *table, q_sq);
     const hn::RebindToSigned<D> di;
     alignas(64) std::int32_t offset[max_lanes];
     hn::Store(hn::ShiftLeft<2>(places.segment), di, offset);
     std::array<V, RadialTable::record_size> c;
     load_fours(d, table->coefficients.data(), offset, c);
-    return cubic_at<kSteepness>(d, *table, places, c);
+    return cubic_at<kSteepness>(d, places, c);
   }
 };
 
 #if HWY_TARGET <= HWY_AVX3
-/// A table of few segments: a permutation of two registers finds a coefficient.
+/// A table of few segments: permutations of two registers find a coefficient.
+template <bool kOfSquares>
 struct SmallTableShape : SumShape {
+  static constexpr int pairs = kOfSquares ? 2 : 1;
+  static_assert(RadialTable::few == 32 && RadialTable::few_of_squares == 64);
   const RadialTable* table;
-  /// By coefficient, of segments 0 to 15 and 16 to 31.
-  __m512 coefficients[RadialTable::record_size][2];
+  /// By coefficient, 16 segments each.
+  __m512 coefficients[RadialTable::record_size][2 * pairs];
 
   explicit SmallTableShape(const RadialTable& from) : table(&from) {
-    alignas(64) float c[RadialTable::record_size][RadialTable::few] = {};
+    alignas(64) float c[RadialTable::record_size][32 * pairs] = {};
     for (std::size_t i = 0; i < from.coefficients.size(); ++i) {
       c[i % RadialTable::record_size][i / RadialTable::record_size] = from.coefficients[i];
     }
     for (std::size_t k = 0; k < RadialTable::record_size; ++k) {
-      coefficients[k][0] = _mm512_load_ps(c[k]);
-      coefficients[k][1] = _mm512_load_ps(c[k] + 16);
+      for (std::size_t i = 0; i < 2 * pairs; ++i) {
+        coefficients[k][i] = _mm512_load_ps(c[k] + 16 * i);
+      }
     }
   }
 
   template <bool kSteepness, class D, class V = hn::Vec<D>>
   HWY_INLINE RadialLanes<V> at(D d, V q_sq) const {
-    const TablePlaces<D> places = find_places(d, *table, q_sq);
-    const auto number = places.segment;
+    const TablePlaces<D> places = find_places<kOfSquares>(d, *table, q_sq);
+    const __m512i number = widened(places.segment.raw);
+    const __mmask16 upper = _mm512_cmpge_epi32_mask(number, _mm512_set1_epi32(32));
     const auto look_up = [&](int k) MOTES_INLINE HWY_ATTR {
-      const __m512 low = coefficients[k][0], high = coefficients[k][1];
+      const __m512* const c = coefficients[k];
+      __m512 found = _mm512_permutex2var_ps(c[0], number, c[1]);
+      if constexpr (kOfSquares) {
+        found = _mm512_mask_mov_ps(found, upper, _mm512_permutex2var_ps(c[2], number, c[3]));
+      }
       if constexpr (hn::MaxLanes(D()) == 16) {
-        return V{_mm512_permutex2var_ps(low, number.raw, high)};
+        return V{found};
       } else {
-        // The upper half is of no interest.
-        const __m512i wide = _mm512_castsi256_si512(number.raw);
-        return V{_mm512_castps512_ps256(_mm512_permutex2var_ps(low, wide, high))};
+        return V{_mm512_castps512_ps256(found)};
       }
     };
-    return cubic_at<kSteepness>(d, *table, places,
-                                {look_up(0), look_up(1), look_up(2), look_up(3)});
+    return cubic_at<kSteepness>(d, places, {look_up(0), look_up(1), look_up(2), look_up(3)});
   }
+
+ private:
+  static HWY_INLINE __m512i widened(__m512i number) { return number; }
+  /// The upper half is of no interest.
+  static HWY_INLINE __m512i widened(__m256i number) { return _mm512_castsi256_si512(number); }
 };
 #endif
 
@@ -292,7 +309,10 @@ HWY_INLINE void with_shape(const SamplingConstants& constants, std::size_t f, Us
       return use(WendlandC6Shape{});
     case KernelType::tabulated:
 #if HWY_TARGET <= HWY_AVX3
-      if (field.table.has_few()) return use(SmallTableShape(field.table));
+      if (field.table.has_few()) {
+        return field.table.of_squares ? use(SmallTableShape<true>(field.table))
+                                      : use(SmallTableShape<false>(field.table));
+      }
 #endif
       return use(TabulatedShape{{}, &field.table});
   }

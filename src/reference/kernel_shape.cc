@@ -1,6 +1,9 @@
 // Kernels' shapes, written out as their sources give them.
+#include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <numbers>
+#include <vector>
 
 #include "reference/field.h"
 
@@ -37,16 +40,46 @@ ShapeValue wendland(int power, const double (&c)[n], double q) {
   return product({std::pow(t, power), -power / 2. * std::pow(t, power - 1)}, polynomial(c, q));
 }
 
-/// Fritsch & Butland (1984), even steps: the harmonic mean of the slopes on both sides, 0 where
-/// they are of different signs.
+/// Derivative at x[0] of the polynomial through all points.
+double polynomial_slope(const std::vector<double>& x, const std::vector<double>& y) {
+  double slope = 0;
+  for (std::size_t j = 1; j < x.size(); ++j) {
+    // Lagrange's basis, that of point j and what it takes from point 0.
+    double of_j = 1 / (x[j] - x[0]);
+    for (std::size_t k = 1; k < x.size(); ++k) {
+      if (k != j) of_j *= (x[0] - x[k]) / (x[j] - x[k]);
+    }
+    slope += of_j * y[j] + y[0] / (x[0] - x[j]);
+  }
+  return slope;
+}
+
+/// Slope of the polynomial through the five points nearest to point i of an even function, of
+/// tables of up to four points through fewer at their ends; never against the secants on both
+/// sides, nor more than three times as steep (Hyman 1983).
 double point_slope(const RadialProfile& profile, std::size_t i) {
   const auto& v = profile.values;
-  if (i == 0 || (i == v.size() - 1 && v[i] == 0)) return 0;
+  const std::size_t last = v.size() - 1;
+  if (i == 0 || (i == last && v[i] == 0)) return 0;
+  const int at = static_cast<int>(i), end = static_cast<int>(last);
+  std::vector<double> x, y;
+  const auto add = [&](int j) {
+    x.push_back(profile.spacing * j);
+    y.push_back(v[static_cast<std::size_t>(std::abs(j))]);
+  };
+  add(at);
+  const bool at_end = at + 2 > end;
+  const int above = std::min(at + 2, end);
+  const int below = !at_end || last >= 4 ? above - 4 : at - 1;
+  for (int j = below; j <= above; ++j) {
+    if (j != at) add(j);
+  }
   const double left = (v[i] - v[i - 1]) / profile.spacing;
-  if (i == v.size() - 1) return left;
-  const double right = (v[i + 1] - v[i]) / profile.spacing;
-  if (left == 0 || right == 0 || (left < 0) != (right < 0)) return 0;
-  return 1 / (0.5 / left + 0.5 / right);
+  const double right = i == last ? left : (v[i + 1] - v[i]) / profile.spacing;
+  const double slope = polynomial_slope(x, y);
+  if (left > 0 && right > 0) return std::max(0.0, std::min({slope, 3 * left, 3 * right}));
+  if (left < 0 && right < 0) return std::min(0.0, std::max({slope, 3 * left, 3 * right}));
+  return 0;
 }
 
 ShapeValue profile_value(const RadialProfile& profile, double q) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <cstdlib>
 #include <numbers>
 #include <string>
 #include <utility>
@@ -23,13 +24,31 @@ constexpr std::array<std::pair<KernelType, std::string_view>, 7> kernel_names{{
     {KernelType::tabulated, "tabulated"},
 }};
 
-/// What the value at `i` rises by over a step of the profile, as the curve has it there.
+/// The derivative at `i` times the step, by the polynomial through five points; those beyond 0 are
+/// the mirror's. Of short tables, at their ends, through fewer.
+double difference_at(const std::vector<double>& values, std::size_t i) {
+  const auto v = [&](int offset) {
+    return values[static_cast<std::size_t>(std::abs(static_cast<int>(i) + offset))];
+  };
+  const std::size_t last = values.size() - 1;
+  if (i + 2 <= last) return (8 * (v(1) - v(-1)) - (v(2) - v(-2))) / 12;
+  if (last < 4) return i == last ? v(0) - v(-1) : 0.5 * (v(1) - v(-1));
+  if (i + 1 == last) return (3 * v(1) + 10 * v(0) - 18 * v(-1) + 6 * v(-2) - v(-3)) / 12;
+  return (25 * v(0) - 48 * v(-1) + 36 * v(-2) - 16 * v(-3) + 3 * v(-4)) / 12;
+}
+
+/// What the value at `i` rises by over a step of the profile, as the curve has it there: limited so
+/// that the curve rises and falls with the values (Hyman 1983).
 double rise_at(const std::vector<double>& values, std::size_t i) {
   if (i == 0) return 0;
+  const bool is_last = i + 1 == values.size();
+  if (is_last && values[i] == 0) return 0;
   const double before = values[i] - values[i - 1];
-  if (i + 1 == values.size()) return values[i] == 0 ? 0 : before;
-  const double after = values[i + 1] - values[i];
-  return before * after > 0 ? 2 * before * after / (before + after) : 0;
+  const double after = is_last ? before : values[i + 1] - values[i];
+  if (before * after <= 0) return 0;
+  const double steepest = 3 * (before > 0 ? std::min(before, after) : std::max(before, after));
+  const double rise = difference_at(values, i);
+  return steepest > 0 ? std::clamp(rise, 0.0, steepest) : std::clamp(rise, steepest, 0.0);
 }
 
 RadialValue evaluate_table(const RadialProfile& profile, double q) {

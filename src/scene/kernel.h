@@ -19,9 +19,9 @@ enum class KernelType {
   tabulated,  ///< a RadialProfile
 };
 
-/// Values at even distances from 0 on. Between them the monotone cubic of Fritsch & Butland (1984),
-/// which makes no new maxima; the slope is 0 at distance 0, and at the last value if that is 0;
-/// zero behind the last.
+/// Values at even distances from 0 on. Between them the monotone cubic of Hyman (1983): its slopes
+/// are differences of fourth order, limited so that it makes no new maxima; 0 at distance 0, and at
+/// the last value if that is 0. Zero behind the last.
 struct RadialProfile {
   std::filesystem::path path;  ///< of the file that it is from
   double spacing = 1;          ///< radii

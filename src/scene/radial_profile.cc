@@ -80,7 +80,8 @@ double secant(const Points& points, std::size_t i) {
   return (points[i + 1].value - points[i].value) / (points[i + 1].distance - points[i].distance);
 }
 
-/// Slope of the curve at point i (Fritsch & Butland 1984).
+/// Slope of the curve at point i: that of the parabola through it and its neighbours, limited so
+/// that the curve rises and falls with the values (Hyman 1983).
 double slope_at(const Points& points, std::size_t i) {
   if (i == 0) return 0;
   const double before = secant(points, i - 1);
@@ -89,8 +90,10 @@ double slope_at(const Points& points, std::size_t i) {
   if (before * after <= 0) return 0;
   const double width_before = points[i].distance - points[i - 1].distance;
   const double width_after = points[i + 1].distance - points[i].distance;
-  const double w1 = 2 * width_after + width_before, w2 = width_after + 2 * width_before;
-  return (w1 + w2) / (w1 / before + w2 / after);
+  const double parabola =
+      (width_after * before + width_before * after) / (width_before + width_after);
+  const double steepest = 3 * std::min(std::abs(before), std::abs(after));
+  return std::clamp(parabola, -steepest, steepest);
 }
 
 double curve_at(const Points& points, double distance) {

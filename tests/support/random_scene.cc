@@ -77,19 +77,21 @@ ParticleSet draw_particles(Draw& draw, const Extent& extent, int num_particles) 
   return particles_at(points);
 }
 
-/// Mostly Gaussians; tables with a step at their end, and with values of both signs.
+/// Mostly Gaussians; tables with a step at their end, and with values of both signs: rough ones,
+/// mostly short, and smooth ones.
 KernelShape draw_shape(Draw& draw) {
   KernelShape shape;
   if (draw.chance(0.6)) return shape;
   shape.type = static_cast<KernelType>(1 + draw.below(6));
   if (shape.type != KernelType::tabulated) return shape;
-  const int num_points = 2 + draw.below(9);
-  const bool negative = draw.chance(0.3), ends = draw.chance(0.5);
+  const bool smooth = draw.chance(0.3), negative = draw.chance(0.3), ends = draw.chance(0.5);
+  const int num_points = smooth ? 257 : draw.chance(0.8) ? 2 + draw.below(9) : 70;
   shape.profile.spacing = draw.uniform(1.5, 3) / num_points;
   for (int i = 0; i < num_points; ++i) {
-    const double left = 1 - static_cast<double>(i) / (num_points - 1);
-    const double value = draw.uniform(negative ? -0.5 : 0.5, 1) * (ends ? left : 0.1 + left);
-    shape.profile.values.push_back(value);
+    const double q = static_cast<double>(i) / (num_points - 1), left = 1 - q;
+    const double random = draw.uniform(negative ? -0.5 : 0.5, 1);
+    const double rough = random * (ends ? left : 0.1 + left);
+    shape.profile.values.push_back(smooth ? std::exp(-4 * q * q) : rough);
   }
   return shape;
 }
