@@ -66,7 +66,8 @@ HWY_INLINE GridSamples sample_any_grid(const GridView& grid, const GridPoints& p
 }
 
 /// Whether the field may take a level's value in a box of index coordinates.
-inline bool may_cross(const IsosurfaceGrid& grid, const double (&low)[3], const double (&high)[3]) {
+inline bool may_take_level(const IsosurfaceGrid& grid, const double (&low)[3],
+                           const double (&high)[3]) {
   int first[3], last[3];
   std::size_t count = 1;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -130,7 +131,7 @@ class GridAlongRays {
         high[i] = std::max(high[i], index);
       }
     }
-    return may_cross(grid_, low, high);
+    return may_take_level(grid_, low, high);
   }
   const SlabFrame& slab() const { return slab_; }
 
@@ -148,23 +149,35 @@ class GridAlongRays {
     }
   }
 
-  /// Planes between which nothing can be crossed are left out.
-  std::uint32_t sample_planes(float (*values)[max_lanes], float (*slopes)[max_lanes]) const {
+  /// False if nothing is crossed between planes begin and end.
+  bool may_cross(int begin, int end) const {
     const LaneTag d;
-    constexpr int looked_at = 8;  // intervals together: about a macro cell of default steps
-    std::uint32_t crossable = 0;
-    for (int begin = 0; begin + 1 < slab_.count; begin += looked_at) {
-      const int end = std::min(begin + looked_at, slab_.count - 1);
-      if (!may_cross_between(plane_depth(slab_, begin), plane_depth(slab_, end))) continue;
-      const bool has_first = (crossable >> begin & 1) != 0;
-      for (int k = has_first ? begin + 1 : begin; k <= end; ++k) {
-        const AlongRays at = evaluate(k, hn::Set(d, plane_depth(slab_, k)));
-        hn::Store(at.value, d, values[k]);
-        hn::Store(at.slope, d, slopes[k]);
-        if (k > begin) crossable |= std::uint32_t{1} << k;
-      }
+    const GridPoints a = rays_.at(hn::Set(d, plane_depth(slab_, begin)));
+    const GridPoints b = rays_.at(hn::Set(d, plane_depth(slab_, end)));
+    const LaneMask meet = rays_.meet();
+    if (hn::AllFalse(d, meet)) return false;
+    const Lanes infinity = hn::Set(d, std::numeric_limits<float>::infinity());
+    double low[3], high[3];
+    const auto bound = [&](int i, Lanes p, Lanes q) HWY_ATTR {
+      low[i] =
+          double{hn::GetLane(hn::MinOfLanes(d, hn::IfThenElse(meet, hn::Min(p, q), infinity)))};
+      high[i] = double{
+          hn::GetLane(hn::MaxOfLanes(d, hn::IfThenElse(meet, hn::Max(p, q), hn::Neg(infinity))))};
+    };
+    bound(0, a.x, b.x);
+    bound(1, a.y, b.y);
+    bound(2, a.z, b.z);
+    return may_take_level(grid_, low, high);
+  }
+
+  void sample_planes(int begin, int end, float (*values)[max_lanes],
+                     float (*slopes)[max_lanes]) const {
+    const LaneTag d;
+    for (int k = begin; k <= end; ++k) {
+      const AlongRays at = evaluate(k, hn::Set(d, plane_depth(slab_, k)));
+      hn::Store(at.value, d, values[k]);
+      hn::Store(at.slope, d, slopes[k]);
     }
-    return crossable;
   }
 
   HWY_NOINLINE AlongRays evaluate(int /*k*/, Lanes z) const {
@@ -194,25 +207,6 @@ class GridAlongRays {
   }
 
  private:
-  bool may_cross_between(float near, float far) const {
-    const LaneTag d;
-    const GridPoints a = rays_.at(hn::Set(d, near)), b = rays_.at(hn::Set(d, far));
-    const LaneMask meet = rays_.meet();
-    if (hn::AllFalse(d, meet)) return false;
-    const Lanes infinity = hn::Set(d, std::numeric_limits<float>::infinity());
-    double low[3], high[3];
-    const auto bound = [&](int i, Lanes p, Lanes q) HWY_ATTR {
-      low[i] =
-          double{hn::GetLane(hn::MinOfLanes(d, hn::IfThenElse(meet, hn::Min(p, q), infinity)))};
-      high[i] = double{
-          hn::GetLane(hn::MaxOfLanes(d, hn::IfThenElse(meet, hn::Max(p, q), hn::Neg(infinity))))};
-    };
-    bound(0, a.x, b.x);
-    bound(1, a.y, b.y);
-    bound(2, a.z, b.z);
-    return may_cross(grid_, low, high);
-  }
-
   const IsosurfaceGrid& grid_;
   double eye_[3], axes_[3][3];  ///< index coordinates; of their gradients, camera axes
   SlabFrame slab_;

@@ -28,7 +28,7 @@ struct GradientAndColor {
 /// Depths of planes and of what is between them are relative to the slab's reference.
 class KernelsAlongRays {
  public:
-  /// The field is 0 in slabs that are not entered.
+  /// The field is 0 where it cannot be crossed.
   static constexpr bool zero_elsewhere = true;
 
   KernelsAlongRays(const IsosurfaceFrame& frame, const SamplingConstants& constants,
@@ -74,17 +74,25 @@ class KernelsAlongRays {
     }
   }
 
-  /// The field on the slab's planes. Bit k of what is returned: it may cross a level between planes
-  /// k - 1 and k.
-  std::uint32_t sample_planes(float (*values)[max_lanes], float (*slopes)[max_lanes]) const {
+  /// False if the field is 0 on planes begin to end and between them.
+  bool may_cross(int begin, int end) const {
+    return std::any_of(reaching_.begin(), reaching_.end(), [&](const Reaching& kernel) {
+      return kernel.first < end && kernel.last > begin;
+    });
+  }
+
+  /// The field on planes begin to end.
+  void sample_planes(int begin, int end, float (*values)[max_lanes],
+                     float (*slopes)[max_lanes]) const {
     const LaneTag d;
-    for (int k = 0; k < slab_.count; ++k) {
+    for (int k = begin; k <= end; ++k) {
       hn::Store(hn::Zero(d), d, values[k]);
       hn::Store(hn::Zero(d), d, slopes[k]);
     }
     with_shape(constants_, field_, [&](const auto& shape) HWY_ATTR {
       for (const Reaching& kernel : reaching_) {
-        for (int k = kernel.first; k <= kernel.last; ++k) {
+        const int last = std::min(kernel.last, end);
+        for (int k = std::max(kernel.first, begin); k <= last; ++k) {
           const AlongRays sums = add_kernel(shape, kernels_, kernel.index,
                                             points_at(hn::Set(d, plane_depth(slab_, k))),
                                             {hn::Load(d, values[k]), hn::Load(d, slopes[k])});
@@ -93,7 +101,6 @@ class KernelsAlongRays {
         }
       }
     });
-    return ~std::uint32_t{0};
   }
 
   /// The field at depths z between planes k - 1 and k.

@@ -30,6 +30,14 @@ struct MarchPacket {
   alignas(64) float value[max_lanes], slope[max_lanes];  ///< on the last plane before the slab's
 };
 
+/// Goes on behind planes between which nothing can be crossed.
+template <class Field>
+void skip(MarchPacket& packet) {
+  std::fill_n(packet.value, max_lanes, 0.0f);
+  std::fill_n(packet.slope, max_lanes, 0.0f);
+  packet.started = Field::zero_elsewhere;
+}
+
 /// Marches packets through one slab of one field. Field: KernelsAlongRays, or the same of a grid.
 template <class Field>
 class SlabMarch {
@@ -43,25 +51,37 @@ class SlabMarch {
     return along_.enter(rays, slab, view);
   }
 
+  /// Piece by piece, so that planes behind what ends all rays are not sampled.
   void run(MarchPacket& packet, const View& view) {
     packet_ = &packet;
     along_.place(packet.rays, view);
-    const std::uint32_t crossable = along_.sample_planes(values_, slopes_);
-    const auto keep = [&](int k) HWY_ATTR {
-      const LaneTag d;
-      hn::Store(hn::Load(d, values_[k]), d, packet.value);
-      hn::Store(hn::Load(d, slopes_[k]), d, packet.slope);
-    };
-    if (!packet.started) keep(0);
-    packet.started = true;
-    for (int k = 1; k < along_.slab().count && packet.active != 0; ++k) {
-      if ((crossable >> k & 1) != 0) cross_interval(k);
-      keep(k);
+    constexpr int piece = 8;  // planes: about a macro cell of default steps
+    const int last = along_.slab().count - 1;
+    for (int begin = 0; begin < last && packet.active != 0; begin += piece) {
+      const int end = std::min(begin + piece, last);
+      if (!along_.may_cross(begin, end)) {
+        skip<Field>(packet);
+        continue;
+      }
+      const bool known = packet.started;
+      along_.sample_planes(known ? begin + 1 : begin, end, values_, slopes_);
+      if (!known) keep(begin);
+      packet.started = true;
+      for (int k = begin + 1; k <= end && packet.active != 0; ++k) {
+        cross_interval(k);
+        keep(k);
+      }
     }
-    packet.started = along_.slab().count > 1 && (crossable >> (along_.slab().count - 1) & 1) != 0;
   }
 
  private:
+  /// Takes what the rays have on plane k for what they had last.
+  void keep(int k) {
+    const LaneTag d;
+    hn::Store(hn::Load(d, values_[k]), d, packet_->value);
+    hn::Store(hn::Load(d, slopes_[k]), d, packet_->slope);
+  }
+
   /// Finds the crossings between planes k - 1 and k.
   void cross_interval(int k) {
     const LaneTag d;

@@ -44,13 +44,17 @@ HWY_INLINE unsigned children_within(const Bvh::Node& node, const Point3f& p, flo
   return hits;
 }
 
-/// The surroundings of a point in one field.
+/// The surroundings of a point in one field. One at a time on a thread.
 class Surroundings {
  public:
   Surroundings(const KernelSet& kernels, const SamplingConstants& constants, std::size_t f,
                const Point3d& start)
-      : kernels_(kernels), constants_(constants), f_(f), start_(start) {
+      : kernels_(kernels), constants_(constants), f_(f), start_(start), local_(scratch()) {
     with_shape(constants, f, [&](const auto& shape) { distance_scale_ = shape.distance_scale; });
+    for (int a = 0; a < 3; ++a) {
+      start_high_[a] = static_cast<float>(start[a]);
+      start_low_[a] = static_cast<float>(start[a] - static_cast<double>(start_high_[a]));
+    }
   }
 
   /// Takes directions, of which the first `count` lanes matter.
@@ -87,20 +91,32 @@ class Surroundings {
     const Lanes z = hn::Mul(t, hn::Load(d, directions_[2]));
     Lanes sum = hn::Zero(d);
     with_shape(constants_, f_, [&](const auto& shape) HWY_ATTR {
-      for (std::size_t i = 0; i < local_.size; ++i) {
-        if (std::abs(distance_[i] - distance) > local_.support[i]) continue;
-        const Lanes dx = hn::Sub(x, hn::Set(d, local_.x[i]));
-        const Lanes dy = hn::Sub(y, hn::Set(d, local_.y[i]));
-        const Lanes dz = hn::Sub(z, hn::Set(d, local_.z[i]));
+      const LocalKernels& local = local_.kernels;
+      for (std::size_t i = 0; i < local.size; ++i) {
+        if (std::abs(local_.distance[i] - distance) > local.support[i]) continue;
+        const Lanes dx = hn::Sub(x, hn::Set(d, local.x[i]));
+        const Lanes dy = hn::Sub(y, hn::Set(d, local.y[i]));
+        const Lanes dz = hn::Sub(z, hn::Set(d, local.z[i]));
         const Lanes square = hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)));
-        const auto phi = shape.template at<false>(d, hn::Mul(square, hn::Set(d, local_.scale[i])));
-        sum = hn::MulAdd(hn::Set(d, local_.peak[i]), phi.value, sum);
+        const auto phi = shape.template at<false>(d, hn::Mul(square, hn::Set(d, local.scale[i])));
+        sum = hn::MulAdd(hn::Set(d, local.peak[i]), phi.value, sum);
       }
     });
     return sum;
   }
 
  private:
+  /// Kernels around the point, and how far their centres are from it.
+  struct Local {
+    LocalKernels kernels;
+    std::vector<float> distance;
+  };
+  /// Memory that one point leaves to the next: there is one for each pixel.
+  static Local& scratch() {
+    static thread_local Local local;
+    return local;
+  }
+
   Vector3d direction(std::size_t lane) const {
     return {directions_[0][lane], directions_[1][lane], directions_[2][lane]};
   }
@@ -111,35 +127,59 @@ class Surroundings {
     gathered_length_ = length;
     const float factor = constants_.fields[f_].support_factor;
     const Point3f near(static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z));
-    local_.size = 0;
-    distance_.clear();
+    const Vector3f around(p - start_);
+    local_.kernels.size = 0;
+    local_.distance.clear();
     traverse(
         kernels_.bvh,
         [&](const Bvh::Node& node) { return children_within(node, near, length, factor); },
-        [&](std::size_t leaf) { add_leaf(leaf, p, length); });
+        [&](std::size_t leaf) { add_leaf(leaf, around, length); });
   }
 
-  void add_leaf(std::size_t leaf, const Point3d& p, float length) {
+  void add_leaf(std::size_t leaf, const Vector3f& around, float length) {
+    const LaneTag d;
     const FieldConstants& field = constants_.fields[f_];
-    const std::size_t begin = leaf * Bvh::leaf_size;
-    const std::size_t end = std::min(begin + Bvh::leaf_size, kernels_.size());
-    local_.reserve(Bvh::leaf_size);
-    for (std::size_t i = begin; i < end; ++i) {
-      if (kernels_.field_of(i) != f_) continue;
-      const Point3d center{kernels_.x[i], kernels_.y[i], kernels_.z[i]};
-      const float radius = kernels_.radius[i], support = 1.00001f * field.support_factor * radius;
-      if (motes::length(center - p) > static_cast<double>(support) + length) continue;
-      const Vector3d from_start = center - start_;
-      const auto x = static_cast<float>(from_start.x), y = static_cast<float>(from_start.y),
-                 z = static_cast<float>(from_start.z);
-      const std::size_t at = local_.size++;
-      local_.x[at] = x;
-      local_.y[at] = y;
-      local_.z[at] = z;
-      local_.support[at] = support;
-      local_.scale[at] = distance_scale_ / (radius * radius);
-      local_.peak[at] = field.peak_factor * kernels_.weight[i];
-      distance_.push_back(std::sqrt(x * x + y * y + z * z));
+    LocalKernels& local = local_.kernels;
+    local.reserve(Bvh::leaf_size);
+    for (std::size_t i = 0; i < Bvh::leaf_size; i += hn::Lanes(d)) {
+      const std::size_t begin = leaf * Bvh::leaf_size + i;
+      Lanes from_start[3];
+      Lanes square = hn::Zero(d), from_middle_sq = hn::Zero(d);
+      const float* const centers[3] = {&kernels_.x[begin], &kernels_.y[begin], &kernels_.z[begin]};
+      for (int a = 0; a < 3; ++a) {
+        // In two steps: what is near is told apart to the last digit.
+        from_start[a] = hn::Sub(hn::Sub(hn::Load(d, centers[a]), hn::Set(d, start_high_[a])),
+                                hn::Set(d, start_low_[a]));
+        const Lanes from_middle = hn::Sub(from_start[a], hn::Set(d, around[a]));
+        square = hn::MulAdd(from_start[a], from_start[a], square);
+        from_middle_sq = hn::MulAdd(from_middle, from_middle, from_middle_sq);
+      }
+      const Lanes radius = hn::Load(d, kernels_.radius.from(begin));
+      const Lanes support = hn::Mul(radius, hn::Set(d, 1.00001f * field.support_factor));
+      const Lanes reach = hn::Add(support, hn::Set(d, 1.00001f * length));
+      unsigned bits = mask_bits(d, hn::Le(from_middle_sq, hn::Mul(reach, reach)));
+      if (bits == 0) continue;
+      alignas(64) float x[max_lanes], y[max_lanes], z[max_lanes], distance[max_lanes],
+          supports[max_lanes];
+      hn::Store(from_start[0], d, x);
+      hn::Store(from_start[1], d, y);
+      hn::Store(from_start[2], d, z);
+      hn::Store(hn::Sqrt(square), d, distance);
+      hn::Store(support, d, supports);
+      for (; bits != 0; bits &= bits - 1) {
+        const auto lane = static_cast<std::size_t>(__builtin_ctz(bits));
+        const std::size_t kernel = begin + lane;
+        if (kernel >= kernels_.size() || kernels_.field_of(kernel) != f_) continue;
+        const float own_radius = kernels_.radius[kernel];
+        const std::size_t at = local.size++;
+        local.x[at] = x[lane];
+        local.y[at] = y[lane];
+        local.z[at] = z[lane];
+        local.support[at] = supports[lane];
+        local.scale[at] = distance_scale_ / (own_radius * own_radius);
+        local.peak[at] = field.peak_factor * kernels_.weight[kernel];
+        local_.distance.push_back(distance[lane]);
+      }
     }
   }
 
@@ -147,14 +187,14 @@ class Surroundings {
   const SamplingConstants& constants_;
   std::size_t f_;
   Point3d start_;
+  float start_high_[3], start_low_[3];  ///< their sum is the start
   float distance_scale_ = 1;
   Point3d gathered_;            ///< what the local kernels reach
   float gathered_length_ = -1;  ///< around that; negative: there are none yet
-  LocalKernels local_;
+  Local& local_;
   alignas(64) float directions_[3][max_lanes];
-  Vector3d middle_;              ///< of the directions
-  double spread_ = 0;            ///< how far they are from it at most
-  std::vector<float> distance_;  ///< of each local kernel's centre
+  Vector3d middle_;    ///< of the directions
+  double spread_ = 0;  ///< how far they are from it at most
 };
 
 /// Leaves out the directions along which a level comes within `length`, for the levels of one field

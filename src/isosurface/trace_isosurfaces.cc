@@ -85,9 +85,7 @@ void march_tile(const IsosurfaceFrame& frame, const SamplingConstants& constants
         march.run(packet, view);
         continue;
       }
-      std::fill_n(packet.value, max_lanes, 0.0f);
-      std::fill_n(packet.slope, max_lanes, 0.0f);
-      packet.started = Field::zero_elsewhere;
+      skip<Field>(packet);
     }
     if (!active) break;
   }
