@@ -240,7 +240,7 @@ TEST_P(GridIsosurfaces, AreCrossedWhereTheReferencesFieldCrosses) {
     EXPECT_EQ(hit, hits.end());
   }
   force_instruction_set("");
-  EXPECT_GT(crossings, 200u);
+  EXPECT_GT(crossings, 60 * instruction_sets().size());
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, GridIsosurfaces, testing::Range(0, 6));
