@@ -94,9 +94,9 @@ TileCounts render_packets(const FrameContext& context, const Tile& tile, Framebu
   std::vector<FieldRange> fields(context.grids.empty() ? 0 : context.classifiers.size());
   TileLayers layers;
   BlockLayers block_layers;
-  if (context.layers) context.layers(tile, layers);
   TileCounts counts;
   StageClock clock(counts.stages);
+  if (context.layers) context.layers(tile, layers);
   for (int py = tile.y; py < tile.y + tile.height; py += packet_height) {
     for (int px = tile.x; px < tile.x + tile.width; px += packet_width) {
       const RayPacket packet = make_ray_packet(context, px, py, packet_width, packet_height);

@@ -359,11 +359,13 @@ void Renderer::render(const ResolvedScene& scene, const RenderOptions& options, 
   const auto draw_surfaces_only = [&] {
     std::fill(image.rgba.begin(), image.rgba.end(), 0.0f);
     if (!surfaces.any()) return;
+    StageClock clock(all.stages);
     for_tiles(scene, options, AreaBuffer::size, [&](const Tile& tile) {
       static thread_local TileLayers layers;
       find_layers(surfaces, 0, tile, layers);
       composite_layers(layers, tile, image);
     });
+    clock.lap(Stage::setup);
   };
   if (kernels_->fields.empty() || (kernels_->size() == 0 && grids_.empty())) {
     draw_surfaces_only();
