@@ -1,8 +1,9 @@
 #include "render/make_surface.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
-#include <unordered_map>
+#include <optional>
 #include <utility>
 
 #include "scene/transfer_function.h"
@@ -43,32 +44,56 @@ void set_radii(const GeometrySource& geometry, const UninitializedVector<std::ui
   }
 }
 
+/// Numbers colours in the order in which they come, as many as a byte tells apart. There may be one
+/// for each of millions of particles: a table that is never half full finds them in a step or two.
+class Palette {
+ public:
+  static constexpr std::size_t max_size = 256;
+
+  /// nullopt where there is no room for one more.
+  std::optional<std::uint8_t> number_of(std::uint32_t srgb) {
+    std::size_t slot = (srgb * 2654435761U) >> 22;
+    while (used_[slot]) {
+      if (key_[slot] == srgb) return number_[slot];
+      slot = (slot + 1) % slots;
+    }
+    if (size_ == max_size) return std::nullopt;
+    used_[slot] = true;
+    key_[slot] = srgb;
+    number_[slot] = static_cast<std::uint8_t>(size_++);
+    return number_[slot];
+  }
+
+ private:
+  static constexpr std::size_t slots = 1024;  // 2^(32 - 22)
+  std::array<bool, slots> used_{};
+  std::array<std::uint32_t, slots> key_{};
+  std::array<std::uint8_t, slots> number_{};
+  std::size_t size_ = 0;
+};
+
 /// One colour for all, a palette where it has room for them, or each particle's own.
 void set_colors(const GeometrySource& geometry, const UninitializedVector<std::uint32_t>& drawn,
                 SurfaceColors& colors) {
-  constexpr std::size_t palette_size = 256;
-  std::unordered_map<std::uint32_t, std::uint8_t> place;
   colors.palette.clear();
+  Palette palette;
+  std::vector<std::uint8_t> number;
+  number.reserve(geometry.srgb.size());
   for (const std::uint32_t srgb : geometry.srgb) {
-    if (place.count(srgb) != 0) continue;
-    if (colors.palette.size() == palette_size) break;
-    place.emplace(srgb, static_cast<std::uint8_t>(colors.palette.size()));
-    colors.palette.push_back(color_from_srgb(srgb & 0xffffff));
+    const auto found = palette.number_of(srgb);
+    if (!found) break;
+    if (*found == colors.palette.size()) colors.palette.push_back(color_from_srgb(srgb & 0xffffff));
+    number.push_back(*found);
   }
   if (colors.palette.size() == 1) return;
-  const bool fits = std::all_of(geometry.srgb.begin(), geometry.srgb.end(),
-                                [&](std::uint32_t srgb) { return place.count(srgb) != 0; });
-  if (fits) {
+  const auto drawn_or_first = [&](std::size_t i) { return drawn[i] == not_drawn ? 0 : drawn[i]; };
+  if (number.size() == geometry.srgb.size()) {
     colors.index.resize(drawn.size());
+    for (std::size_t i = 0; i < drawn.size(); ++i) colors.index[i] = number[drawn_or_first(i)];
   } else {
     colors.srgb.resize(drawn.size());
-  }
-  for (std::size_t i = 0; i < drawn.size(); ++i) {
-    const std::uint32_t srgb = drawn[i] == not_drawn ? geometry.srgb[0] : geometry.srgb[drawn[i]];
-    if (fits) {
-      colors.index[i] = place[srgb];
-    } else {
-      colors.set_srgb(i, srgb);
+    for (std::size_t i = 0; i < drawn.size(); ++i) {
+      colors.set_srgb(i, geometry.srgb[drawn_or_first(i)]);
     }
   }
 }
