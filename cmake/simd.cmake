@@ -19,13 +19,7 @@ function(motes_simd_sources)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     set_property(SOURCE ${ARGN} APPEND PROPERTY COMPILE_OPTIONS -Wno-maybe-uninitialized)
   endif()
-  # What the address sanitizer and the processor find by themselves: checked at each load of a vector they
-  # would take two thirds of the compiler's time.
-  if(MOTES_SANITIZE MATCHES "undefined")
-    set_property(SOURCE ${ARGN} APPEND PROPERTY COMPILE_OPTIONS
-      -fno-sanitize=null,alignment,object-size,pointer-overflow)
-  endif()
-  # The same checks of addresses as calls, not spelled out at each load: a third to two thirds less to compile.
+  # Checks of addresses as calls, not spelled out at each load: a third to two thirds less to compile.
   if(MOTES_SANITIZE MATCHES "address" AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     set_property(SOURCE ${ARGN} APPEND PROPERTY COMPILE_OPTIONS --param=asan-instrumentation-with-call-threshold=0)
   endif()

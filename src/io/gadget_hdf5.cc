@@ -9,7 +9,7 @@
 #include <limits>
 #include <numeric>
 #include <optional>
-#include <regex>
+#include <string>
 
 #include "core/error.h"
 #include "io/hdf5_columns.h"
@@ -52,6 +52,23 @@ std::string_view species_name(std::size_t type, bool swift) {
 }
 
 /// Opens the other files of the snapshot that `file` is one of.
+/// What stands before and after the number in the name of one of a snapshot's files.
+struct PartName {
+  std::string before, after;
+};
+
+/// Of a name such as snapshot.0.hdf5 or snapshot.0.hdf5.gz.
+std::optional<PartName> split_part_name(const std::string& name) {
+  const std::size_t end = name.size() - (name.ends_with(".gz") ? 3 : 0);
+  const std::size_t suffix = name.rfind('.', end - 1);
+  if (suffix == 0 || suffix == std::string::npos || suffix + 1 >= end) return std::nullopt;
+  const std::size_t dot = name.rfind('.', suffix - 1);
+  if (dot == std::string::npos || dot + 1 == suffix) return std::nullopt;
+  const std::size_t other = name.find_first_not_of("0123456789", dot + 1);
+  if (other != suffix) return std::nullopt;
+  return PartName{name.substr(0, dot + 1), name.substr(suffix)};
+}
+
 std::vector<Hdf5File> open_parts(Hdf5File file, const ReadOptions& options) {
   const double num_files = file.number("Header", "NumFilesPerSnapshot").value_or(1);
   std::vector<Hdf5File> parts;
@@ -61,17 +78,15 @@ std::vector<Hdf5File> open_parts(Hdf5File file, const ReadOptions& options) {
   }
   constexpr double most_files = 65536;
   const std::filesystem::path path = file.path();
-  const std::string name = path.filename().string();
-  std::smatch match;
-  if (num_files > most_files ||
-      !std::regex_match(name, match, std::regex(R"((.*\.)(\d+)(\.[^.]+(\.gz)?))"))) {
+  const std::optional<PartName> name = split_part_name(path.filename().string());
+  if (num_files > most_files || !name) {
     throw Error(path, fmt::format("says that it is one of {} files; expected a name such as "
                                   "snapshot.0.hdf5",
                                   num_files));
   }
   for (int part = 0; part < static_cast<int>(num_files); ++part) {
     const std::filesystem::path part_path =
-        path.parent_path() / (match.str(1) + std::to_string(part) + match.str(3));
+        path.parent_path() / (name->before + std::to_string(part) + name->after);
     if (!std::filesystem::exists(part_path)) {
       throw Error(part_path,
                   fmt::format("is missing; expected all {} files of the snapshot", num_files));
