@@ -54,15 +54,19 @@ double fit_opacity(const std::vector<RayProfiles>& profiles, const Color& backgr
 /// open:
 /// - the range spans from the median of the values that are not 0 to nearly the largest, on a
 ///   logarithmic scale from their 70 % quantile where they span decades; for values of both signs
-///   it is symmetric about 0;
+///   (signs_of()) it is symmetric about 0;
 /// - the extinction rises over the range so that rays through matter get `opacity` on average:
 ///   linearly, or on a logarithmic scale with the power 1.5 of the place in it, and then less where
 ///   more than 40 % of the light of the rays' largest values would be lost in front of them, but
-///   not below 3/7 of `opacity`. A given extinction always rises linearly.
-/// `species_color` is the colour of species_colors, paler towards the end of the range. Throws
-/// Error for a range that cannot be.
+///   not below 3/7 of `opacity`. For values of both signs it is 0 up to the magnitude beyond which
+///   85 % of their squares lie (enclosing_level()), has half of its height at 6 % of the way from
+///   there to the end, and rises linearly from there. A given extinction always rises linearly.
+/// - without a name the colours are those of viridis, or, for values of both signs, those of
+///   `colors` for these, or the own one where that is preferred.
+/// The own colour is that of species_colors too. Single colours are paler towards the ends of the
+/// range. Throws Error for a range that cannot be.
 TransferFunction fit_transfer_function(const decltype(Field::transfer_function)& wish,
-                                       const Color& species_color, const RayProfiles& profiles,
+                                       const FieldColors& colors, const RayProfiles& profiles,
                                        double opacity);
 
 }  // namespace motes

@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "scene/fit_levels.h"
 
 namespace motes {
 namespace {
@@ -328,15 +329,67 @@ TEST(FitTransferFunction, RisesMoreSteeplyOverDecadesUnlessItsExtinctionIsGiven)
   }
 }
 
-TEST(FitTransferFunction, ValuesOfBothSignsAreSymmetricAboutZero) {
-  const RayProfiles profiles = profiles_of(300, 200, 0.1, [](std::size_t r, std::size_t k) {
-    return std::sin(0.1 * static_cast<double>(r + k));
+/// An orbital that falls off on both sides of a node.
+RayProfiles orbital() {
+  return profiles_of(400, 101, 0.02, [](std::size_t r, std::size_t k) {
+    const double past = 0.002 * static_cast<double>(r),
+                 along = 0.02 * (static_cast<double>(k) - 50);
+    return along * std::exp(-8 * (past * past + along * along));
   });
-  const TransferFunction f = fit_transfer_function({}, {}, profiles, 0.7);
-  EXPECT_EQ(f.points.front().value, -f.points.back().value);
-  EXPECT_EQ(f.points.front().extinction, f.points.back().extinction);
-  EXPECT_EQ(f.points[16].extinction, 0);
-  EXPECT_NEAR(mean_opacity(f, profiles), 0.7, 0.02);
+}
+
+TEST(FitTransferFunction, OfBothSignsHidesTheMiddleThatHardlyCounts) {
+  const RayProfiles profiles = orbital();
+  for (const std::string name : {"", "viridis", "species"}) {
+    decltype(Field::transfer_function) wish;
+    if (!name.empty()) wish = NamedTransferFunction{name, {}, {}, {}};
+    const TransferFunction f = fit_transfer_function(wish, {}, profiles, 0.7);
+    EXPECT_EQ(f.points.front().value, -f.points.back().value);
+    const double last = f.points.back().extinction;
+    double hidden = 0, all = 0;
+    for (const double v : profiles.values) {
+      EXPECT_NEAR(extinction_at(f, v), extinction_at(f, -v), 1e-6 * last);
+      all += v * v;
+      if (extinction_at(f, v) == 0) hidden += v * v;
+    }
+    EXPECT_NEAR(hidden / all, 0.15, 0.01) << name;
+    EXPECT_NEAR(mean_opacity(f, profiles), 0.7, 0.01) << name;
+    // Half of the extinction comes soon.
+    const auto* const first = &*std::find_if(
+        f.points.begin(), f.points.end(),
+        [&](const auto& point) { return point.value > 0 && point.extinction >= 0.499 * last; });
+    const double level = enclosing_level(profiles.values, Signs::both);
+    EXPECT_LT(first->value, level + 0.07 * (f.points.back().value - level)) << name;
+  }
+}
+
+TEST(FitTransferFunction, OfBothSignsHasAColourForEach) {
+  const Color orange{1, 0.5f, 0}, blue{0, 0.2f, 1};
+  const FieldColors colors{.own = {1, 1, 1}, .positive = orange, .negative = blue};
+  const TransferFunction f = fit_transfer_function({}, colors, orbital(), 0.7);
+  for (const double v : {0.01, 0.1, 1.0}) {
+    EXPECT_GT(color_at(f, v).r, color_at(f, v).b);
+    EXPECT_LT(color_at(f, -v).r, color_at(f, -v).b);
+  }
+}
+
+TEST(FitTransferFunction, TakesAFewNegativeValuesForNone) {
+  const RayProfiles clean = profiles_of(300, 200, 0.1, wavy);
+  const RayProfiles ringing = profiles_of(300, 200, 0.1, [](std::size_t r, std::size_t k) {
+    return wavy(r, k) > 0 ? wavy(r, k) : -1e-3;
+  });
+  EXPECT_EQ(fit_transfer_function({}, {}, ringing, 0.7), fit_transfer_function({}, {}, clean, 0.7));
+}
+
+TEST(FitTransferFunction, PrefersItsOwnColourWhereThereAreSeveral) {
+  const FieldColors colors{.own = {1, 0, 0}, .positive = {}, .negative = {}, .prefers_own = true};
+  const RayProfiles profiles = profiles_of(300, 200, 0.1, wavy);
+  EXPECT_EQ(
+      fit_transfer_function({}, colors, profiles, 0.7),
+      fit_transfer_function(NamedTransferFunction{"species", {}, {}, {}}, colors, profiles, 0.7));
+  EXPECT_EQ(
+      fit_transfer_function(NamedTransferFunction{"magma", {}, {}, {}}, colors, profiles, 0.7),
+      fit_transfer_function(NamedTransferFunction{"magma", {}, {}, {}}, {}, profiles, 0.7));
 }
 
 TEST(FitTransferFunction, KeepsWhatTheSceneSays) {
@@ -351,7 +404,8 @@ TEST(FitTransferFunction, KeepsWhatTheSceneSays) {
 TEST(FitTransferFunction, SpeciesColoursAreOneColourAndPalerAtTheEnd) {
   const Color red{1, 0, 0};
   const TransferFunction f = fit_transfer_function(NamedTransferFunction{"species", {}, {}, {}},
-                                                   red, profiles_of(300, 200, 0.1, wavy), 0.7);
+                                                   {.own = red, .positive = {}, .negative = {}},
+                                                   profiles_of(300, 200, 0.1, wavy), 0.7);
   EXPECT_EQ(f.points.front().color, red);
   EXPECT_EQ(f.points.back().color.r, 1);
   EXPECT_EQ(f.points.back().color.g, f.points.back().color.b);
