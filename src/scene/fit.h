@@ -19,7 +19,8 @@ struct VisibleSphere {
 /// The fields' particles, or some of them where there are very many, each as large as its Gaussian
 /// is easily seen; those that are far larger than is typical (in the voids of a cosmological box)
 /// are taken for smaller.
-/// With them the balls of `geometry`, and the corners of grids as spheres of radius 0.
+/// With them the balls of `geometry`, whole, the ends of sticks that leave a periodic cell, and the
+/// corners of grids as spheres of radius 0.
 std::vector<VisibleSphere> visible_spheres(const ParticleSet& particles,
                                            const std::vector<FieldSource>& fields,
                                            const GeometrySource& geometry = {});
@@ -28,6 +29,8 @@ std::vector<VisibleSphere> visible_spheres(const ParticleSet& particles,
 /// `aspect` = width / height. The view is oblique, mostly along their box's thinnest axis, so that
 /// its largest face is seen; y is up, or z where the view is mostly along y or x. Strays do not
 /// count: at most one sphere in a thousand, so far away that the others would be small for it.
+/// In views so wide that all would fit from nearer, the eye keeps 5 % of the diagonal of the
+/// spheres' box in front of the first of them.
 /// Precondition: there are spheres, or eye, target and up are given. Throws Error as camera_axes()
 /// does.
 Camera fit_camera(const Scene& scene, const std::vector<VisibleSphere>& spheres, double aspect);

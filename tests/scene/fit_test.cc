@@ -53,12 +53,46 @@ RC_GTEST_PROP(FitCamera, ShowsTheWholeBoxAndFillsTheImage, ()) {
   const Bounds3d box{corner, corner + Vector3d{number(0, 999), number(0, 999), number(1, 999)}};
   const double aspect = number(4, 64);
   Scene scene;
-  // Much wider, and the nearest corner may come to lie in the eye before the image is full.
-  if (*rc::gen::arbitrary<bool>()) scene.fov_degrees = number(16, 1920);
+  if (*rc::gen::arbitrary<bool>()) scene.fov_degrees = number(16, 2870);
   if (*rc::gen::arbitrary<bool>()) scene.up = Vector3d{number(-99, 99), number(1, 99), 0};
-  const double extent = extent_in_image(fit_camera(scene, corners_of(box), aspect), aspect, box);
-  RC_ASSERT(extent > 0.9);
+  const Camera camera = fit_camera(scene, corners_of(box), aspect);
+  const double extent = extent_in_image(camera, aspect, box);
   RC_ASSERT(extent < 0.98);
+  double nearest = INFINITY;
+  for (const VisibleSphere& point : corners_of(box)) {
+    nearest = std::min(nearest, dot(point.center - camera.eye, camera_axes(camera).forward));
+  }
+  const bool is_as_near_as_may_be = nearest < 0.0501 * length(box.diagonal());
+  RC_ASSERT(extent > 0.9 || is_as_near_as_may_be);
+}
+
+RC_GTEST_PROP(FitCamera, ShowsAllHoweverWideTheView, ()) {
+  const auto number = [](int low, int high) { return *rc::gen::inRange(low, high) / 16.0; };
+  std::vector<VisibleSphere> spheres = corners_of({{-3, 5, 7}, {number(-32, 99), 9, 11}});
+  const double radius = number(0, 32);
+  Bounds3d box;
+  for (VisibleSphere& sphere : spheres) {
+    sphere.radius = radius;
+    for (const double r : {-radius, radius}) box.add(sphere.center + Vector3d{r, r, r});
+  }
+  const double diagonal = length(box.diagonal());
+  const double aspect = number(4, 64);
+  Scene scene;
+  scene.fov_degrees = 180 - std::pow(10, -number(-32, 208));
+  if (*rc::gen::arbitrary<bool>()) scene.target = {number(-64, 64), 7, 9};
+  const Camera camera = fit_camera(scene, spheres, aspect);
+  const CameraAxes axes = camera_axes(camera);
+  const double tan_y = std::tan(camera.fov_degrees * M_PI / 360);
+  for (const VisibleSphere& sphere : spheres) {
+    const Vector3d v = sphere.center - camera.eye;
+    const double depth = dot(v, axes.forward);
+    RC_ASSERT(depth - radius >= 0.05 * diagonal * (1 - 1e-6));
+    for (const auto& [across, tangent] :
+         {std::pair(axes.x, tan_y * aspect), std::pair(axes.y, tan_y)}) {
+      const double reach = std::abs(dot(v, across)) + radius * std::sqrt(1 + tangent * tangent);
+      RC_ASSERT(reach <= tangent * depth * (1 + 1e-6));
+    }
+  }
 }
 
 TEST(FitCamera, LooksAtTheLargestFace) {
@@ -194,6 +228,36 @@ TEST(VisibleSpheres, AreAsLargeAsGaussiansAreSeenAndNotOutsized) {
   EXPECT_EQ(spheres[2].radius, 2.5 * 1.75 * 3);
   fields[0].kernel.support_factor = 1;
   EXPECT_EQ(visible_spheres(particles, fields)[0].radius, 3) << "nothing is beyond the support";
+}
+
+TEST(VisibleSpheres, HoldBallsWholeWhateverTheSizeOfOthers) {
+  ParticleSet particles;
+  for (auto* axis : {&particles.x, &particles.y, &particles.z}) axis->assign(5, 1);
+  GeometrySource geometry;
+  geometry.index = {0, 1, 2, 3, 4};
+  geometry.radius = {1, 1, 1, 1, 100};
+  EXPECT_EQ(visible_spheres(particles, {}, geometry).back().radius, 100);
+}
+
+TEST(VisibleSpheres, HoldSticksThatLeaveTheCell) {
+  ParticleSet particles;
+  particles.x = {1, 9, 5, 6, NAN};
+  particles.y = particles.z = {5, 5, 5, 5, 5};
+  particles.cell = Cell{{0, 0, 0}, {Vector3d{10, 0, 0}, {0, 10, 0}, {0, 0, 10}}};
+  GeometrySource geometry;
+  geometry.index = {0, 1, 2, 3};
+  geometry.radius.assign(4, 0.5f);
+  geometry.stick_radius = 0.25f;
+  geometry.bonds = {{2, 3}};
+  EXPECT_EQ(visible_spheres(particles, {}, geometry).size(), 4u);
+  geometry.bonds = {{0, 1}, {2, 3}, {2, 4}};
+  auto spheres = visible_spheres(particles, {}, geometry);
+  ASSERT_EQ(spheres.size(), 6u);
+  EXPECT_EQ(spheres[4].center, (Point3d{0, 5, 5}));
+  EXPECT_EQ(spheres[5].center, (Point3d{10, 5, 5}));
+  EXPECT_EQ(spheres[4].radius, 0.25);
+  particles.cell->periodic[0] = false;
+  EXPECT_EQ(visible_spheres(particles, {}, geometry).size(), 4u);
 }
 
 /// Rays through `make_value(ray, sample)`.
