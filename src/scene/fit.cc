@@ -31,6 +31,9 @@ constexpr double log_steepness = 1.5;
 constexpr double light_of_peaks = 0.6;
 constexpr double least_opacity = 0.3 / 0.7;  // of the opacity aimed at
 constexpr int log_points = 9;                // of one colour
+// Of values of both signs extinction rises steeply to this part of it, as far on the way from the
+// transparent middle to the end: nearly surfaces, and more where magnitudes are large.
+constexpr double shoulder = 0.5, shoulder_place = 0.06;
 constexpr float paleness = 0.35f;  // of a species' colour at the largest values: shape shows
 constexpr const char* default_map = "viridis";
 
@@ -53,15 +56,11 @@ void for_some_radii(const FieldSource& field, F&& look) {
     look(static_cast<float>(field.width_of(i)));
 }
 
-// Of values of both signs extinction rises steeply to this part of it, as far on the way from the
-// transparent middle to the end: nearly surfaces, and more where magnitudes are large.
-constexpr double shoulder = 0.5, shoulder_place = 0.06;
-
 struct Range {
   double low = 0, high = 1;
   bool log_scale = false, both_signs = false;
   double middle = 0;     ///< of both signs: up to this magnitude all is transparent
-  double steepness = 1;  // the extinction rises with this power of the place in the range
+  double steepness = 1;  ///< the extinction rises with this power of the place in the range
 
   /// The value at a place of the range, 0 to 1.
   double value_at(double place) const {

@@ -61,9 +61,10 @@ double fit_opacity(const std::vector<RayProfiles>& profiles, const Color& backgr
 /// - the extinction rises over the range so that rays through matter get `opacity` on average:
 ///   linearly, or on a logarithmic scale with the power 1.5 of the place in it, and then less where
 ///   more than 40 % of the light of the rays' largest values would be lost in front of them, but
-///   not below 3/7 of `opacity`. For values of both signs it is 0 up to the magnitude beyond which
-///   85 % of their squares lie (enclosing_level()), has half of its height at 6 % of the way from
-///   there to the end, and rises linearly from there. A given extinction always rises linearly.
+///   not below 3/7 of `opacity`; a given extinction rises linearly there too. Over a fitted range
+///   of both signs it is 0 up to the magnitude beyond which 85 % of the values' squares lie
+///   (enclosing_level()), has half of its height at 6 % of the way from there to the end, and rises
+///   linearly from there.
 /// - without a name the colours are those of viridis, or, for values of both signs, those of
 ///   `colors` for these, or the own one where that is preferred.
 /// The own colour is that of species_colors too. Single colours are paler towards the ends of the

@@ -14,6 +14,7 @@ namespace {
 
 constexpr double enclosed = 0.85;
 constexpr double least_share = 0.01;  // of a sign
+constexpr float high_ground = 0.1F;   // of the largest magnitude
 
 /// Bins of floats of 0 or more by their exponent and first bits: 1/256 of their value wide.
 constexpr int dropped_bits = 15;
@@ -54,8 +55,13 @@ Signs signs_of(std::span<const float> values) {
 double enclosing_level(std::span<const float> values, Signs signs) {
   const bool both = signs == Signs::both;
   std::optional<float> lowest;
-  for_magnitudes(values, signs, [&](float m) { lowest = std::min(lowest.value_or(m), m); });
-  const float base = both ? 0 : lowest.value_or(0);
+  float highest = 0;
+  for_magnitudes(values, signs, [&](float magnitude) {
+    lowest = std::min(lowest.value_or(magnitude), magnitude);
+    highest = std::max(highest, magnitude);
+  });
+  const float ground = lowest.value_or(0);
+  const float base = !both && ground >= high_ground * highest ? ground : 0;
 
   std::vector<double> sums(num_bins);
   double sum = 0;

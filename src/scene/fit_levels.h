@@ -12,9 +12,9 @@ enum class Signs { positive, negative, both };
 Signs signs_of(std::span<const float> values);
 
 /// The magnitude v whose level encloses 85 % of what evenly spread values stand for. Of one sign,
-/// as a density, that is their integral (above their lowest magnitude, of a field that nowhere
-/// comes to 0); of both, as an orbital's amplitude, the integral of the squares, within -v and v.
-/// Values of the other sign count as 0, those that are not finite not at all. Between two values
+/// as a density, that is their integral (above their lowest magnitude, where that is 10 % or more
+/// of the largest); of both, as an orbital's amplitude, the integral of the squares, within -v and
+/// v. Values of the other sign count as 0, those that are not finite not at all. Between two values
 /// far apart (of a mask) it is their mean. Where all are equal it is that magnitude.
 double enclosing_level(std::span<const float> values, Signs signs);
 

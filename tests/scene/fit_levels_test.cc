@@ -48,7 +48,9 @@ TEST(EnclosingLevel, OfADensityEnclosesItsIntegral) {
   EXPECT_NEAR(enclosing_level(normal, Signs::positive), normal_level, 0.02 * normal_level);
   const auto mirrored = lattice([](const Vector3d& p) { return -std::exp(-dot(p, p) / 2); });
   EXPECT_EQ(enclosing_level(mirrored, Signs::negative), enclosing_level(normal, Signs::positive));
-  // Of an even ground nothing counts.
+  // Of an even ground nothing counts, if it is high.
+  const auto low = lattice([](const Vector3d& p) { return 1e-3 + std::exp(-dot(p, p) / 2); });
+  EXPECT_LT(enclosing_level(low, Signs::positive), 0.9 * normal_level);
   const auto raised = lattice([](const Vector3d& p) { return 3 + std::exp(-dot(p, p) / 2); });
   EXPECT_NEAR(enclosing_level(raised, Signs::positive), 3 + normal_level, 0.02 * normal_level);
 }
@@ -76,14 +78,15 @@ TEST(EnclosingLevel, IsDefinedForAnyValues) {
 RC_GTEST_PROP(EnclosingLevel, HasItsPartBeyondIt, (const std::vector<float>& values)) {
   const Signs signs = signs_of(values);
   const double level = enclosing_level(values, signs);
-  double lowest = INFINITY, beyond = 0, all = 0;
+  double lowest = INFINITY, highest = 0, beyond = 0, all = 0;
   const auto magnitude = [&](float v) {
     return signs == Signs::both ? std::abs(v) : std::max(signs == Signs::positive ? v : -v, 0.0f);
   };
   for (const float v : values) {
-    if (signs != Signs::both) lowest = std::min(lowest, double{magnitude(v)});
+    lowest = std::min(lowest, double{magnitude(v)});
+    highest = std::max(highest, double{magnitude(v)});
   }
-  if (signs == Signs::both) lowest = 0;
+  if (signs == Signs::both || lowest < 0.1 * highest) lowest = 0;
   for (const float v : values) {
     const double above = magnitude(v) - lowest;
     const double part = signs == Signs::both ? above * above : above;
