@@ -133,6 +133,33 @@ TEST_F(Grids, HaveSurfacesWhereChemistsDrawThem) {
   EXPECT_NEAR(level("quartz_density.cube.xz", 0), 0.0432, 0.0002);
 }
 
+TEST_F(Grids, LookTheSameInEveryEngineWhereverTheCameraIs) {
+  for (const std::string view : {"--eye 1.3,1.3,9 --target 1.3,1.3,1.3",     // outside
+                                 "--eye 1.3,1.2,1.1 --target 0,0.2,0.1",     // inside
+                                 "--eye 0,1.3,1.3 --target 1.3,1.3,1.3"}) {  // on a face
+    for (const std::string style : {"volume", "surface", "volume+balls", "ball-and-stick"}) {
+      for (const std::string engine : {"sweep", "coherent", "direct", "cells"}) {
+        succeed(
+            fmt::format("render h2.cube -o {}.npy --size 16x16 --fov 80 {} --style {} --engine {}",
+                        engine, view, style, engine));
+        EXPECT_EQ(pixels(engine + ".npy"), pixels("sweep.npy")) << view << style << engine;
+      }
+      if (style == "ball-and-stick") continue;  // from inside there may be nothing
+      EXPECT_GT(largest_opacity("sweep.npy"), 0.2) << view << style;
+    }
+  }
+}
+
+TEST_F(Grids, OutOfViewAreToldWithTheirAtoms) {
+  for (const std::string style : {"volume", "surface", "volume+balls", "ball-and-stick"}) {
+    EXPECT_THAT(
+        run("render h2.cube -o a.png --size 16x16 --eye 0,0,20 --target 0,0,40 --style " + style)
+            .err,
+        HasSubstr("motes: warning: nothing is in view"))
+        << style;
+  }
+}
+
 TEST_F(Grids, HaveTheirMemoryInTheStatistics) {
   const auto grid_bytes = [this](const std::string& arguments) {
     succeed("render " + arguments + " -o a.png --size 8x8 --stats s.json");
