@@ -211,9 +211,13 @@ TransferFunction plain_colors(const Color& positive, const Color& negative, cons
 void add_points(std::span<const double> values, TransferFunction& function) {
   std::vector<TransferFunction::Point> points = function.points;
   for (const double value : values) points.push_back(point_at(function, value));
-  std::ranges::sort(points, {}, &TransferFunction::Point::value);
-  const auto repeated = std::ranges::unique(points, {}, &TransferFunction::Point::value);
-  points.erase(repeated.begin(), repeated.end());
+  using Point = TransferFunction::Point;
+  std::sort(points.begin(), points.end(),
+            [](const Point& a, const Point& b) { return a.value < b.value; });
+  const auto repeated =
+      std::unique(points.begin(), points.end(),
+                  [](const Point& a, const Point& b) { return a.value == b.value; });
+  points.erase(repeated, points.end());
   function.points = std::move(points);
 }
 
