@@ -11,8 +11,28 @@ namespace {
 
 constexpr float least_visible = 1.0f / 255;
 
-/// Whether a sphere about each kernel's centre, as large as its support, reaches into the view, or
-/// one about a grid.
+/// How far a particle's kernel, ball and sticks reach from its centre; internal length.
+double reach_of(const Renderer& renderer, std::size_t i) {
+  const KernelSet& kernels = renderer.kernels();
+  const std::size_t field = kernels.field_of(i);
+  double reach = 0;
+  if (field < kernels.fields.size()) {
+    reach = kernels.fields[field].kernel.support() * kernels.radius[i];
+  }
+  const Surface* surface = renderer.surface();
+  if (surface == nullptr) return reach;
+  reach = std::max(reach, double{surface->radius[i]});
+  const Sticks& sticks = surface->sticks;
+  if (sticks.size() == 0) return reach;
+  for (std::size_t s = sticks.begin[i]; s < sticks.begin[i + 1]; ++s) {
+    const double half = length(Vector3d{sticks.x[s], sticks.y[s], sticks.z[s]});
+    reach = std::max(reach, half + sticks.radius_of(s));
+  }
+  return reach;
+}
+
+/// Whether a sphere about each particle's centre, as large as what it has, reaches into the view,
+/// or one about a grid.
 bool any_in_view(const Renderer& renderer, const Camera& camera, double aspect) {
   const KernelSet& kernels = renderer.kernels();
   const CameraAxes axes = camera_axes(camera);
@@ -34,12 +54,11 @@ bool any_in_view(const Renderer& renderer, const Camera& camera, double aspect) 
     if (reaches_view(box.center(), 0.5 * length(box.diagonal()))) return true;
   }
   for (std::size_t i = 0; i < kernels.size(); ++i) {
-    const std::size_t field = kernels.field_of(i);
-    if (field == kernels.fields.size()) return true;  // drawn: it is up to the surfaces
-    const double radius =
-        kernels.fields[field].kernel.support() * kernels.radius[i] / kernels.length_scale;
     const Vector3d from_origin{kernels.x[i], kernels.y[i], kernels.z[i]};
-    if (reaches_view(kernels.origin + from_origin / kernels.length_scale, radius)) return true;
+    if (reaches_view(kernels.origin + from_origin / kernels.length_scale,
+                     reach_of(renderer, i) / kernels.length_scale)) {
+      return true;
+    }
   }
   return false;
 }

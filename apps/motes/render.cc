@@ -57,6 +57,7 @@ struct Statistics {
   double read_ms = 0, build_ms = 0;
   std::vector<double> frame_ms;
   std::size_t particles = 0, particle_bytes = 0, tree_bytes = 0;
+  std::optional<std::size_t> grid_bytes;  ///< nullopt: there are no grids
   RenderStatistics frame;
 };
 
@@ -67,20 +68,21 @@ std::string to_json(const Statistics& s) {
   for (std::size_t i = 0; i < num_stages; ++i) {
     stages[stage_names[i]] = s.frame.stages.fraction(static_cast<Stage>(i));
   }
-  const nlohmann::ordered_json out{{"frame_ms", median(s.frame_ms)},
-                                   {"frame_ms_min", *std::ranges::min_element(s.frame_ms)},
-                                   {"build_ms", s.build_ms},
-                                   {"read_ms", s.read_ms},
-                                   {"particles", s.particles},
-                                   {"samples", s.frame.samples},
-                                   {"kernel_evaluations", s.frame.kernel_evaluations},
-                                   {"stages", stages},
-                                   {"particle_bytes", s.particle_bytes},
-                                   {"tree_bytes", s.tree_bytes},
-                                   {"peak_rss_bytes", usage.ru_maxrss * 1024},
-                                   {"threads", s.frame.threads},
-                                   {"engine", s.frame.engine},
-                                   {"instruction_set", s.frame.instruction_set}};
+  nlohmann::ordered_json out{{"frame_ms", median(s.frame_ms)},
+                             {"frame_ms_min", *std::ranges::min_element(s.frame_ms)},
+                             {"build_ms", s.build_ms},
+                             {"read_ms", s.read_ms},
+                             {"particles", s.particles},
+                             {"samples", s.frame.samples},
+                             {"kernel_evaluations", s.frame.kernel_evaluations},
+                             {"stages", stages},
+                             {"particle_bytes", s.particle_bytes},
+                             {"tree_bytes", s.tree_bytes},
+                             {"peak_rss_bytes", usage.ru_maxrss * 1024},
+                             {"threads", s.frame.threads},
+                             {"engine", s.frame.engine},
+                             {"instruction_set", s.frame.instruction_set}};
+  if (s.grid_bytes) out["grid_bytes"] = *s.grid_bytes;
   return out.dump(2) + "\n";
 }
 
@@ -137,6 +139,7 @@ void run(const Options& options) {
   statistics.particles = renderer.kernels().size();
   statistics.particle_bytes = renderer.kernels().particle_bytes();
   statistics.tree_bytes = renderer.kernels().bvh.bytes();
+  if (!renderer.grids().empty()) statistics.grid_bytes = num_bytes(renderer.grids());
 
   const Framebuffer image = with_place(options.path, options.changes, [&] {
     return render_frames(renderer, prepared.resolved, options, console, statistics);

@@ -13,6 +13,7 @@
 #include <optional>
 
 #include "core/error.h"
+#include "document/input.h"
 #include "scene/style.h"
 
 namespace motes {
@@ -231,12 +232,12 @@ SceneChanges::Change read_transfer_function_option(const std::string& text) {
 
 SceneChanges::Change read_style(const std::string& text) {
   try {
-    geometry_of_style(text);
+    check_fields_of_style(text, {});
   } catch (const Error& error) {
     throw CLI::ValidationError(fmt::format("--style: {}", error.what()),
                                CLI::ExitCodes::ValidationError);
   }
-  return [text](Scene& scene) { apply_style(text, scene); };
+  return [text](Scene& scene) { apply_style(text, scene, look_at_data(scene.data_path)); };
 }
 
 SceneChanges::Change read_interpolation(const std::string& text) {

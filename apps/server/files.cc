@@ -82,7 +82,7 @@ Scene Files::parse_scene(std::string_view text, const fs::path& directory) const
   for (json* path : paths_of(scene)) {
     *path = resolve((directory / path->get<std::string>()).string()).string();
   }
-  return motes::parse_scene(scene.dump(), "scene");
+  return motes::parse_scene(scene.dump(), "scene", look_at_data);
 }
 
 Scene Files::open_scene(const fs::path& path) const {

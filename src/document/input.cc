@@ -7,6 +7,7 @@
 #include <iostream>
 #include <iterator>
 #include <memory>
+#include <system_error>
 #include <utility>
 
 #include "core/error.h"
@@ -29,26 +30,26 @@ void check_exists(const std::filesystem::path& file, const std::string& key,
               fmt::format("{}: {}: there is no such file", key, printable(file.string(), 4096)));
 }
 
-/// Makes the grids of its data the fields of a scene that leaves these to the data, and shows the
-/// atoms too, if there are some and no style says what is drawn.
+/// Shows the grids of its data, with their atoms, where a scene leaves to the data what is drawn.
 void show_grids(Scene& scene) {
-  Field of_style;
-  of_style.name = "all";
-  const bool has_style = scene.fields == std::vector<Field>{of_style};
-  const bool is_open = scene.fields.empty() && scene.geometry.empty();
-  if (!(is_open || has_style) || !is_grid_file(scene.data_path)) return;
-  scene.fields.assign(1, {});
-  scene.fields[0].grid.emplace();
-  if (!has_style && has_particles(scene.data_path))
-    scene.geometry = geometry_of_style("volume+balls");
+  if (!scene.fields.empty() || !scene.geometry.empty()) return;
+  const DataContents data = look_at_data(scene.data_path);
+  if (data.grids) apply_style(data.particles ? "volume+balls" : "volume", scene, data);
 }
 
 Scene read_scene_from(std::istream& stream, const std::filesystem::path& name) {
   const std::string text{std::istreambuf_iterator<char>(stream), {}};
-  return parse_scene(text, name);
+  return parse_scene(text, name, look_at_data);
 }
 
 }  // namespace
+
+DataContents look_at_data(const std::filesystem::path& path) {
+  std::error_code error;
+  if (path.empty()) return {.particles = false};
+  if (!std::filesystem::exists(path, error) || !is_grid_file(path)) return {};
+  return {.particles = has_particles(path), .grids = true};
+}
 
 bool shows_particles(const Scene& scene) {
   return scene.fields.empty() || !scene.geometry.empty() ||
@@ -84,7 +85,7 @@ Scene open_scene(const std::filesystem::path& path) {
     show_grids(scene);
     return scene;
   }
-  scene = is_piped ? read_scene_from(std::cin, path) : read_scene(path);
+  scene = is_piped ? read_scene_from(std::cin, path) : read_scene(path, look_at_data);
   check_exists(scene.data_path, "data.path", path);
   for (std::size_t f = 0; f < scene.fields.size(); ++f) {
     const auto& grid = scene.fields[f].grid;

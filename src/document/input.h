@@ -16,6 +16,10 @@ namespace motes {
 /// standard input, whose relative paths are relative to the working directory. Throws Error.
 Scene open_scene(const std::filesystem::path& path);
 
+/// What the file has, by its head, for parse_scene(); a path that is empty nothing, and one where
+/// there is no file particles, which will be missed when they are read. Throws Error.
+DataContents look_at_data(const std::filesystem::path& path);
+
 struct Input {
   std::string format;
   ParticleSet particles;

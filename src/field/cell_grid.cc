@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cmath>
 #include <functional>
+#include <optional>
 
 namespace motes {
 namespace {
@@ -23,14 +24,17 @@ double support_of(const KernelSet& kernels, std::size_t i) {
   return kernels.fields[f].kernel.support() * kernels.radius[i];
 }
 
-/// The support that half of some kernels' are smaller than.
-double typical_support(const KernelSet& kernels) {
+/// The support that half of some kernels' are smaller than; nullopt if none is in a field.
+std::optional<double> typical_support(const KernelSet& kernels) {
   std::vector<double> supports;
   const std::size_t stride = 1 + kernels.size() / 65536;
   for (std::size_t i = 0; i < kernels.size(); i += stride) {
     if (is_in_a_field(kernels, i)) supports.push_back(support_of(kernels, i));
   }
-  if (supports.empty()) return kernels.fields[0].max_radius * kernels.length_scale;
+  for (std::size_t i = 0; supports.empty(); ++i) {
+    if (i == kernels.size()) return std::nullopt;
+    if (is_in_a_field(kernels, i)) supports.push_back(support_of(kernels, i));
+  }
   const auto middle = supports.begin() + static_cast<std::ptrdiff_t>(supports.size() / 2);
   std::nth_element(supports.begin(), middle, supports.end());
   return *middle;
@@ -106,9 +110,9 @@ double entries_of(const KernelSet& kernels, const CellGrid& grid) {
       std::plus<>());
 }
 
-CellGrid choose_cells(const KernelSet& kernels, const Bounds3d& box) {
+CellGrid choose_cells(const KernelSet& kernels, double support, const Bounds3d& box) {
   const auto n = static_cast<double>(kernels.size());
-  double width = typical_support(kernels) * 2;
+  double width = support * 2;
   const Vector3d sides = box.diagonal();
   const double longest = std::max({sides.x, sides.y, sides.z});
   // A huge empty box around few kernels has fewer cells.
@@ -122,11 +126,14 @@ CellGrid choose_cells(const KernelSet& kernels, const Bounds3d& box) {
 }  // namespace
 
 CellGrid build_cell_grid(const KernelSet& kernels) {
+  const std::optional<double> support = typical_support(kernels);
+  if (!support) return {};
   const Bounds3d file_box = kernels.box();
   const auto to_internal = [&](const Point3d& p) {
     return Point3d{} + kernels.length_scale * (p - kernels.origin);
   };
-  CellGrid grid = choose_cells(kernels, {to_internal(file_box.min), to_internal(file_box.max)});
+  CellGrid grid =
+      choose_cells(kernels, *support, {to_internal(file_box.min), to_internal(file_box.max)});
 
   // Count each cell's kernels, then fill the lists; then sort each, whatever threads came first.
   std::vector<std::atomic<std::uint32_t>> counts(static_cast<std::size_t>(cells_of(grid)));

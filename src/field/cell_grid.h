@@ -42,7 +42,8 @@ struct CellGrid {
 
 /// Cells as wide as a typical support, so that most kernels are in eight of them; larger ones where
 /// radii differ so much that lists would have more than 32 entries a kernel, or there would be more
-/// than four cells a kernel. In parallel; deterministic. Throws std::bad_alloc.
+/// than four cells a kernel; none where no kernel is in a field. In parallel; deterministic. Throws
+/// std::bad_alloc.
 CellGrid build_cell_grid(const KernelSet& kernels);
 
 }  // namespace motes

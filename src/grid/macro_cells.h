@@ -33,6 +33,7 @@ class MacroCells {
   }
   /// Of all blocks, those of a row along x one after the other.
   const std::vector<Range>& ranges() const { return ranges_; }
+  std::size_t num_bytes() const { return ranges_.size() * sizeof(Range); }
 
  private:
   std::array<int, 3> dims_;

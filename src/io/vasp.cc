@@ -211,7 +211,17 @@ std::unique_ptr<Trajectory> open_vasp(const std::filesystem::path& path,
   return std::make_unique<InMemoryTrajectory>("VASP", path, std::move(frames));
 }
 
+bool is_named_as_grid(const std::filesystem::path& path) {
+  const std::string file = bare_name(path);
+  constexpr std::string_view names[] = {"chgcar", "aeccar", "parchg", "locpot", "elfcar"};
+  return std::any_of(std::begin(names), std::end(names), [&file](std::string_view name) {
+    return file.find(name) != std::string::npos;
+  });
+}
+
 bool has_grid(const std::filesystem::path& path) {
+  // (of a volume without a grid, or a bad one, its reader says what is wrong)
+  if (is_named_as_grid(path)) return true;
   try {
     return parse_head(path, {}, [&](LineReader& lines) {
       read_structure(path, lines, {});

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
 #include <utility>
 
 namespace motes {
@@ -68,6 +69,16 @@ void set_units(const GridFields& grids, KernelSet& kernels) {
     field.value_scale = unit_scale(magnitude_of(*grid.cells));
     field.mixed_signs = has_both_signs(*grid.cells);
   }
+}
+
+std::size_t num_bytes(const GridFields& grids) {
+  std::set<const GridSampler*> counted;
+  std::size_t sum = 0;
+  for (const GridField& grid : grids) {
+    if (!counted.insert(grid.sampler.get()).second) continue;
+    sum += grid.sampler->num_bytes() + grid.cells->num_bytes();
+  }
+  return sum;
 }
 
 Bounds3d volume_box(const KernelSet& kernels, const GridFields& grids) {

@@ -31,6 +31,9 @@ GridFields make_grid_fields(const std::vector<FieldSource>& fields);
 /// there are no particles a scale of lengths.
 void set_units(const GridFields& grids, KernelSet& kernels);
 
+/// Memory of the grids' arrays and macro cells, each counted once.
+std::size_t num_bytes(const GridFields& grids);
+
 /// The volume's one box: that of the kernels, and of all grids; file's lengths, world axes.
 Bounds3d volume_box(const KernelSet& kernels, const GridFields& grids);
 

@@ -17,9 +17,19 @@ bool is_open(const Field& field) {
   return named == nullptr || !named->range || !named->extinction;
 }
 
+/// Of an isosurface of which neither the scene nor a transfer function says it.
+Color default_color(const Field& field, double value, const FieldColors& colors) {
+  const auto is_negative = [](const Isosurface& isosurface) { return isosurface.value < 0; };
+  const auto number =
+      std::count_if(field.isosurfaces.begin(), field.isosurfaces.end(), is_negative);
+  const bool both_signs = number > 0 && number < std::ssize(field.isosurfaces);
+  if (!field.grid || !both_signs) return colors.own;
+  return value < 0 ? colors.negative : colors.positive;
+}
+
 std::vector<Color> colors_of(const Isosurface& isosurface, const ParticleSet& particles,
-                             const TransferFunction& function) {
-  if (!isosurface.color) return {color_at(function, isosurface.value)};
+                             const Color& otherwise) {
+  if (!isosurface.color) return {otherwise};
   if (const Color* color = std::get_if<Color>(&*isosurface.color)) return {*color};
   if (particles.species.empty()) return {color_from_srgb(0xcccccc)};
   std::vector<Color> colors;
@@ -65,16 +75,20 @@ ResolvedScene resolve(const Scene& scene, const ParticleSet& particles,
   }
   const double opacity = fit_opacity(profiles, scene.render.background);
   for (std::size_t f = 0; f < fields.size(); ++f) {
-    const TransferFunction invisible{{{0, sources[f].species_color, 0}}};
-    resolved.transfer_functions.push_back(fields[f].draws_volume()
-                                              ? fit_transfer_function(fields[f].transfer_function,
-                                                                      sources[f].species_color,
-                                                                      profiles[f], opacity)
-                                              : invisible);
-    for (const Isosurface& isosurface : fields[f].isosurfaces) {
-      resolved.isosurfaces.push_back(
-          {f, isosurface.value, static_cast<float>(isosurface.opacity),
-           colors_of(isosurface, particles, resolved.transfer_functions.back())});
+    const Field& field = fields[f];
+    const FieldColors& colors = sources[f].colors;
+    const TransferFunction invisible{{{0, colors.own, 0}}};
+    resolved.transfer_functions.push_back(
+        field.draws_volume()
+            ? fit_transfer_function(field.transfer_function, colors, profiles[f], opacity)
+            : invisible);
+    for (const Isosurface& isosurface : field.isosurfaces) {
+      const double value = isosurface.value;
+      const Color otherwise = field.draws_volume()
+                                  ? color_at(resolved.transfer_functions.back(), value)
+                                  : default_color(field, value, colors);
+      resolved.isosurfaces.push_back({f, value, static_cast<float>(isosurface.opacity),
+                                      colors_of(isosurface, particles, otherwise)});
     }
   }
   return resolved;

@@ -269,7 +269,7 @@ void complete_source(const ParticleSet& particles, const Field& field,
   source.radius = gather(radius, source.index);
   if (!field.radius) take_as_widths(source);
   source.weight = gather(weight, source.index);
-  source.species_color = species_color(particles, source.index);
+  source.colors.own = species_color(particles, source.index);
   source.colored_by_species = std::any_of(
       field.isosurfaces.begin(), field.isosurfaces.end(), [](const Isosurface& isosurface) {
         return isosurface.color && std::holds_alternative<ColorBy>(*isosurface.color);
@@ -298,6 +298,7 @@ std::vector<FieldSource> make_field_sources(const ParticleSet& particles,
     if (fields[f].grid) continue;
     complete_source(particles, fields[f], default_radius, sources[f], warnings);
   }
+  color_grids(sources);
   return sources;
 }
 

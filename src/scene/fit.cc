@@ -4,10 +4,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <span>
+#include <utility>
 
 #include "core/error.h"
+#include "scene/fit_levels.h"
 
 namespace motes {
 namespace {
@@ -27,6 +31,9 @@ constexpr double log_steepness = 1.5;
 constexpr double light_of_peaks = 0.6;
 constexpr double least_opacity = 0.3 / 0.7;  // of the opacity aimed at
 constexpr int log_points = 9;                // of one colour
+// Of values of both signs extinction rises steeply to this part of it, as far on the way from the
+// transparent middle to the end: nearly surfaces, and more where magnitudes are large.
+constexpr double shoulder = 0.5, shoulder_place = 0.06;
 constexpr float paleness = 0.35f;  // of a species' colour at the largest values: shape shows
 constexpr const char* default_map = "viridis";
 
@@ -52,7 +59,8 @@ void for_some_radii(const FieldSource& field, F&& look) {
 struct Range {
   double low = 0, high = 1;
   bool log_scale = false, both_signs = false;
-  double steepness = 1;  // the extinction rises with this power of the place in the range
+  double middle = 0;     ///< of both signs: up to this magnitude all is transparent
+  double steepness = 1;  ///< the extinction rises with this power of the place in the range
 
   /// The value at a place of the range, 0 to 1.
   double value_at(double place) const {
@@ -70,10 +78,11 @@ Range fit_range(const RayProfiles& profiles, std::optional<bool> log_scale) {
   if (absolute.empty()) return {};
   Range range;
   const bool wants_log = log_scale.value_or(false) && !positive.empty();
-  if (positive.size() < absolute.size() && !wants_log) {
+  if (signs_of(profiles.values) != Signs::positive && !wants_log) {
     range.both_signs = true;
     range.high = quantile(absolute, 0.999);
     range.low = -range.high;
+    range.middle = std::min(enclosing_level(profiles.values, Signs::both), 0.5 * range.high);
     return range;
   }
   const double largest = quantile(positive, 0.999);
@@ -91,7 +100,9 @@ Range fit_range(const RayProfiles& profiles, std::optional<bool> log_scale) {
 
 /// How far `value` lies in the range, 0 to 1.
 double place(const Range& range, double value) {
-  if (range.both_signs) return std::min(std::abs(value) / range.high, 1.0);
+  if (range.both_signs) {
+    return std::clamp((std::abs(value) - range.middle) / (range.high - range.middle), 0.0, 1.0);
+  }
   if (range.log_scale) {
     if (!(value > range.low)) return 0;
     return std::min(std::log(value / range.low) / std::log(range.high / range.low), 1.0);
@@ -101,7 +112,16 @@ double place(const Range& range, double value) {
 
 /// The extinction at `value`, as a part of that at the end of the range.
 double ramp(const Range& range, double value) {
-  return std::pow(place(range, value), range.steepness);
+  const double at = place(range, value);
+  if (!range.both_signs) return std::pow(at, range.steepness);
+  if (at < shoulder_place) return shoulder * at / shoulder_place;
+  return shoulder + (1 - shoulder) * (at - shoulder_place) / (1 - shoulder_place);
+}
+
+/// Where the ramp of values of both signs bends, increasing.
+std::array<double, 6> bends(const Range& range) {
+  const double rise = range.middle + shoulder_place * (range.high - range.middle);
+  return {-range.high, -rise, -range.middle, range.middle, rise, range.high};
 }
 
 /// A ray that meets matter, for an extinction of 1 at the end of the range.
@@ -162,19 +182,22 @@ double fit_extinction(const RayProfiles& profiles, const Range& range, double op
   return high;
 }
 
-TransferFunction one_color(const Color& color, const Range& range, double extinction) {
+/// Of colours for values from 0 on and below.
+TransferFunction plain_colors(const Color& positive, const Color& negative, const Range& range,
+                              double extinction) {
   const auto paler = [](float channel, float part) {
     return channel + part * paleness * (1 - channel);
   };
   const auto point = [&](double value) {
     const auto part = static_cast<float>(place(range, value));
+    const Color& color = value < 0 ? negative : positive;
     const Color pale{paler(color.r, part), paler(color.g, part), paler(color.b, part)};
     return TransferFunction::Point{value, pale, extinction * ramp(range, value)};
   };
   TransferFunction function;
   function.log_scale = range.log_scale;
   if (range.both_signs) {
-    for (const double value : {range.low, 0.0, range.high}) function.points.push_back(point(value));
+    for (const double value : bends(range)) function.points.push_back(point(value));
     return function;
   }
   const int last = range.steepness == 1 ? 1 : log_points - 1;
@@ -182,6 +205,20 @@ TransferFunction one_color(const Color& color, const Range& range, double extinc
     function.points.push_back(point(range.value_at(static_cast<double>(k) / last)));
   }
   return function;
+}
+
+/// Adds what the function has at `values` to its points.
+void add_points(std::span<const double> values, TransferFunction& function) {
+  std::vector<TransferFunction::Point> points = function.points;
+  for (const double value : values) points.push_back(point_at(function, value));
+  using Point = TransferFunction::Point;
+  std::sort(points.begin(), points.end(),
+            [](const Point& a, const Point& b) { return a.value < b.value; });
+  const auto repeated =
+      std::unique(points.begin(), points.end(),
+                  [](const Point& a, const Point& b) { return a.value == b.value; });
+  points.erase(repeated, points.end());
+  function.points = std::move(points);
 }
 
 }  // namespace
@@ -240,12 +277,11 @@ double fit_opacity(const std::vector<RayProfiles>& profiles, const Color& backgr
 }
 
 TransferFunction fit_transfer_function(const decltype(Field::transfer_function)& wish,
-                                       const Color& species_color, const RayProfiles& profiles,
+                                       const FieldColors& colors, const RayProfiles& profiles,
                                        double opacity) {
   if (const auto* given = std::get_if<TransferFunction>(&wish)) return *given;
   NamedTransferFunction named;
   if (const auto* given = std::get_if<NamedTransferFunction>(&wish)) named = *given;
-  if (named.name.empty()) named.name = default_map;
 
   Range range;
   if (named.range) {
@@ -259,9 +295,16 @@ TransferFunction fit_transfer_function(const decltype(Field::transfer_function)&
   const double extinction =
       named.extinction ? *named.extinction : fit_extinction(profiles, range, opacity);
 
-  if (named.name == species_colors) return one_color(species_color, range, extinction);
+  if (named.name.empty() && range.both_signs) {
+    return plain_colors(colors.positive, colors.negative, range, extinction);
+  }
+  if (named.name == species_colors || (named.name.empty() && colors.prefers_own)) {
+    return plain_colors(colors.own, colors.own, range, extinction);
+  }
   TransferFunction function =
-      named_transfer_function(named.name, range.low, range.high, extinction, range.log_scale);
+      named_transfer_function(named.name.empty() ? default_map : named.name, range.low, range.high,
+                              extinction, range.log_scale);
+  if (range.both_signs) add_points(bends(range), function);
   for (auto& point : function.points) point.extinction = extinction * ramp(range, point.value);
   return function;
 }

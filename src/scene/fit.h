@@ -19,7 +19,8 @@ struct VisibleSphere {
 /// The fields' particles, or some of them where there are very many, each as large as its Gaussian
 /// is easily seen; those that are far larger than is typical (in the voids of a cosmological box)
 /// are taken for smaller.
-/// With them the balls of `geometry`, and the corners of grids as spheres of radius 0.
+/// With them the balls of `geometry`, whole, the ends of sticks that leave a periodic cell, and the
+/// corners of grids as spheres of radius 0.
 std::vector<VisibleSphere> visible_spheres(const ParticleSet& particles,
                                            const std::vector<FieldSource>& fields,
                                            const GeometrySource& geometry = {});
@@ -28,6 +29,8 @@ std::vector<VisibleSphere> visible_spheres(const ParticleSet& particles,
 /// `aspect` = width / height. The view is oblique, mostly along their box's thinnest axis, so that
 /// its largest face is seen; y is up, or z where the view is mostly along y or x. Strays do not
 /// count: at most one sphere in a thousand, so far away that the others would be small for it.
+/// In views so wide that all would fit from nearer, the eye keeps 5 % of the diagonal of the
+/// spheres' box in front of the first of them.
 /// Precondition: there are spheres, or eye, target and up are given. Throws Error as camera_axes()
 /// does.
 Camera fit_camera(const Scene& scene, const std::vector<VisibleSphere>& spheres, double aspect);
@@ -54,15 +57,20 @@ double fit_opacity(const std::vector<RayProfiles>& profiles, const Color& backgr
 /// open:
 /// - the range spans from the median of the values that are not 0 to nearly the largest, on a
 ///   logarithmic scale from their 70 % quantile where they span decades; for values of both signs
-///   it is symmetric about 0;
+///   (signs_of()) it is symmetric about 0;
 /// - the extinction rises over the range so that rays through matter get `opacity` on average:
 ///   linearly, or on a logarithmic scale with the power 1.5 of the place in it, and then less where
 ///   more than 40 % of the light of the rays' largest values would be lost in front of them, but
-///   not below 3/7 of `opacity`. A given extinction always rises linearly.
-/// `species_color` is the colour of species_colors, paler towards the end of the range. Throws
-/// Error for a range that cannot be.
+///   not below 3/7 of `opacity`; a given extinction rises linearly there too. Over a fitted range
+///   of both signs it is 0 up to the magnitude beyond which 85 % of the values' squares lie
+///   (enclosing_level()), has half of its height at 6 % of the way from there to the end, and rises
+///   linearly from there.
+/// - without a name the colours are those of viridis, or, for values of both signs, those of
+///   `colors` for these, or the own one where that is preferred.
+/// The own colour is that of species_colors too. Single colours are paler towards the ends of the
+/// range. Throws Error for a range that cannot be.
 TransferFunction fit_transfer_function(const decltype(Field::transfer_function)& wish,
-                                       const Color& species_color, const RayProfiles& profiles,
+                                       const FieldColors& colors, const RayProfiles& profiles,
                                        double opacity);
 
 }  // namespace motes

@@ -3,6 +3,7 @@
 #include <numbers>
 #include <random>
 
+#include "particles/minimum_image.h"
 #include "scene/fit.h"
 
 namespace motes {
@@ -13,6 +14,7 @@ constexpr double default_fov = 45;    // degrees
 constexpr double nearly_cubic = 0.8;  // thinnest by largest side
 constexpr double flat = 1e-3;         // likewise: seen straight, as obliquely it would be a line
 constexpr double nearly_parallel = 0.99;  // cosine
+constexpr double in_front = 0.05;         // of the diagonal, from the eye to the first of the data
 constexpr double easily_seen = 1.75;      // standard deviations: there a Gaussian is at a fifth
 constexpr double large = 2.5;             // times the middle radius
 constexpr std::size_t particles_looked_at = 1 << 18;  // of one field
@@ -101,42 +103,112 @@ void add_corners(const std::vector<FieldSource>& fields, std::vector<VisibleSphe
   }
 }
 
-}  // namespace
+/// How a camera moves from its target to where it sees all.
+struct Placing {
+  Vector3d shift;  ///< of the target, across the view
+  double distance = 0;
+};
 
-std::vector<VisibleSphere> visible_spheres(const ParticleSet& particles,
-                                           const std::vector<FieldSource>& fields,
-                                           const GeometrySource& geometry) {
-  std::vector<VisibleSphere> spheres;
-  std::mt19937 random(1);  // evenly many would beat with a lattice
-  for (const FieldSource& field : fields) {
-    const double widths = field.kernel.support() / field.kernel.standard_deviation();
-    const double extent = std::min(widths, easily_seen);
-    const std::size_t stride = 1 + field.index.size() / particles_looked_at;
-    for (std::size_t begin = 0; begin < field.index.size(); begin += stride) {
-      const std::size_t i = std::min(begin + random() % stride, field.index.size() - 1);
-      spheres.push_back({particles.position(field.index[i]), extent * field.width_of(i)});
-    }
+/// As near as all spheres allow where half of the image's height is `tangent` at depth 1; the shift
+/// is 0 unless it `may_shift`. With the camera moved by (x, y) across the view, a sphere of radius
+/// r at (u, v, w) in camera axes about the target is in the image where |u - x| + r sqrt(1 +
+/// tan_x^2) <= tan_x (distance + w), and so in y.
+Placing place_camera(const std::vector<VisibleSphere>& spheres, const Camera& camera,
+                     const CameraAxes& axes, double aspect, double tangent, bool may_shift) {
+  const double tan_x = tangent * aspect, tan_y = tangent;
+  // Smallest distance that shows all spheres on one side, towards `across`.
+  const auto distance_for = [&](const Vector3d& across, double tan) {
+    const double around = std::sqrt(1 + tan * tan);
+    return largest_of(spheres, [&](const VisibleSphere& sphere) {
+      const Vector3d v = sphere.center - camera.target;
+      const double w = camera.orthographic_height ? 0 : dot(v, axes.forward);
+      return (dot(v, across) + sphere.radius * around) / tan - w;
+    });
+  };
+  const double right = distance_for(axes.x, tan_x), left = distance_for(-axes.x, tan_x);
+  const double top = distance_for(axes.y, tan_y), bottom = distance_for(-axes.y, tan_y);
+  if (!may_shift) return {{}, std::max({right, left, top, bottom})};
+  return {tan_x * (right - left) / 2 * axes.x + tan_y * (top - bottom) / 2 * axes.y,
+          std::max(right + left, top + bottom) / 2};
+}
+
+/// The same, but no nearer than `least`: as if the view were less wide, if it must be.
+template <class Place>
+Placing place_in_front(const Place& place, double tangent, double least) {
+  Placing placing = place(tangent);
+  if (placing.distance >= least) return placing;
+  double low = std::min(tangent, 0.01), high = tangent;
+  for (int step = 0; step < 20; ++step) {
+    const double middle = std::sqrt(low * high);
+    (place(middle).distance < least ? high : low) = middle;
   }
-  const std::size_t stride = 1 + geometry.index.size() / particles_looked_at;
-  for (std::size_t begin = 0; begin < geometry.index.size(); begin += stride) {
-    const std::size_t i = std::min(begin + random() % stride, geometry.index.size() - 1);
-    spheres.push_back({particles.position(geometry.index[i]), geometry.radius[i]});
-  }
-  if (spheres.empty()) {
-    add_corners(fields, spheres);
-    // Nothing is drawn: the place where something could be.
-    if (const Bounds3d box = particles.bounds(); spheres.empty() && !box.empty()) {
-      spheres = {{box.min, 0}, {box.max, 0}};
-    }
-    return spheres;
-  }
+  placing = place(low);
+  placing.distance = std::max(placing.distance, least);
+  return placing;
+}
+
+/// Takes for smaller what is far larger than is typical.
+void limit_radii(std::vector<VisibleSphere>& spheres) {
+  if (spheres.empty()) return;
   std::vector<double> radii(spheres.size());
   std::transform(spheres.begin(), spheres.end(), radii.begin(),
                  [](const VisibleSphere& sphere) { return sphere.radius; });
   const auto middle = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
   std::nth_element(radii.begin(), middle, radii.end());
   for (VisibleSphere& sphere : spheres) sphere.radius = std::min(sphere.radius, large * *middle);
+}
+
+/// Calls use(i) with `particles_looked_at` or more of the numbers below `count`.
+template <class F>
+void for_some(std::size_t count, std::mt19937& random, F&& use) {
+  const std::size_t stride = 1 + count / particles_looked_at;
+  // (evenly many would beat with a lattice)
+  for (std::size_t begin = 0; begin < count; begin += stride) {
+    use(std::min(begin + random() % stride, count - 1));
+  }
+}
+
+/// Adds balls, and the ends of half-bonds that leave the cell; other sticks lie between balls that
+/// are as wide.
+void add_geometry(const ParticleSet& particles, const GeometrySource& geometry,
+                  std::mt19937& random, std::vector<VisibleSphere>& spheres) {
+  for_some(geometry.index.size(), random, [&](std::size_t i) {
+    spheres.push_back({particles.position(geometry.index[i]), geometry.radius[i]});
+  });
+  const MinimumImage image(particles.cell);
+  if (image.edges().empty()) return;
+  for_some(geometry.bonds.size(), random, [&](std::size_t b) {
+    const Bond& bond = geometry.bonds[b];
+    const Point3d first = particles.position(bond.first), second = particles.position(bond.second);
+    const Vector3d across = image(second - first);
+    const double shift = length(across - (second - first));
+    if (!(shift > 1e-6 * length(across))) return;
+    spheres.push_back({first + 0.5 * across, geometry.stick_radius});
+    spheres.push_back({second - 0.5 * across, geometry.stick_radius});
+  });
+}
+
+}  // namespace
+
+std::vector<VisibleSphere> visible_spheres(const ParticleSet& particles,
+                                           const std::vector<FieldSource>& fields,
+                                           const GeometrySource& geometry) {
+  std::vector<VisibleSphere> spheres;
+  std::mt19937 random(1);
+  for (const FieldSource& field : fields) {
+    const double widths = field.kernel.support() / field.kernel.standard_deviation();
+    const double extent = std::min(widths, easily_seen);
+    for_some(field.index.size(), random, [&](std::size_t i) {
+      spheres.push_back({particles.position(field.index[i]), extent * field.width_of(i)});
+    });
+  }
+  limit_radii(spheres);
+  add_geometry(particles, geometry, random, spheres);
   add_corners(fields, spheres);
+  // Nothing is drawn: the place where something could be.
+  if (const Bounds3d box = particles.bounds(); spheres.empty() && !box.empty()) {
+    spheres = {{box.min, 0}, {box.max, 0}};
+  }
   return spheres;
 }
 
@@ -163,45 +235,29 @@ Camera fit_camera(const Scene& scene, const std::vector<VisibleSphere>& spheres,
   const CameraAxes axes = camera_axes(camera);
   if (scene.eye) return camera;
 
-  // As near as all spheres allow. With the camera moved by (x, y) across the view, a sphere of
-  // radius r at (u, v, w) in camera axes about the target is in the image where
-  // |u - x| + r sqrt(1 + tan_x^2) <= tan_x (distance + w), and so in y.
-  const double tan_y =
-      margin *
-      (camera.orthographic_height ? 1 : std::tan(camera.fov_degrees * std::numbers::pi / 360));
-  const double tan_x = tan_y * aspect;
-  // Smallest distance that shows all spheres on one side, towards `across`.
-  const auto distance_for = [&](const Vector3d& across, double tangent) {
-    const double around = std::sqrt(1 + tangent * tangent);
-    return largest_of(spheres, [&](const VisibleSphere& sphere) {
-      const Vector3d v = sphere.center - camera.target;
-      const double w = camera.orthographic_height ? 0 : dot(v, axes.forward);
-      return (dot(v, across) + sphere.radius * around) / tangent - w;
-    });
+  // Depth of a sphere's nearest point from the target on.
+  const auto front = [&, target = camera.target](const VisibleSphere& sphere) {
+    return dot(sphere.center - target, axes.forward) - sphere.radius;
   };
-  const double right = distance_for(axes.x, tan_x), left = distance_for(-axes.x, tan_x);
-  const double top = distance_for(axes.y, tan_y), bottom = distance_for(-axes.y, tan_y);
-  double distance = std::max({right, left, top, bottom});
-  if (!scene.target) {
-    camera.target =
-        camera.target + tan_x * (right - left) / 2 * axes.x + tan_y * (top - bottom) / 2 * axes.y;
-    distance = std::max(right + left, top + bottom) / 2;
-  }
+  const auto place = [&](double tangent) {
+    return place_camera(spheres, camera, axes, aspect, tangent, !scene.target);
+  };
   if (camera.orthographic_height) {
+    const Placing placing = place(margin);
+    camera.target = camera.target + placing.shift;
     // In front of all, strays too.
     double nearest = 0;
-    for (const VisibleSphere& sphere : spheres) {
-      const double depth = dot(sphere.center - camera.target, axes.forward);
-      nearest = std::max(nearest, sphere.radius - depth);
-    }
-    distance = nearest + 0.01 * diagonal;
+    for (const VisibleSphere& sphere : spheres) nearest = std::max(nearest, -front(sphere));
+    camera.eye = camera.target - (nearest + 0.01 * diagonal) * axes.forward;
+    return camera;
   }
-  // Wide views come so near that a point could be in the eye itself.
-  const double nearest = largest_of(spheres, [&](const VisibleSphere& sphere) {
-    return -dot(sphere.center - camera.target, axes.forward);
-  });
-  distance = std::max({distance, 1e-3 * diagonal, nearest + 1e-9 * diagonal});
-  camera.eye = camera.target - distance * axes.forward;
+  const double nearest = largest_of(spheres, [&](const VisibleSphere& s) { return -front(s); });
+  const double tangent = margin * std::tan(camera.fov_degrees * std::numbers::pi / 360);
+  // (also behind a target that lies before all of it)
+  const Placing placing =
+      place_in_front(place, tangent, std::max(nearest, 0.0) + in_front * diagonal);
+  camera.target = camera.target + placing.shift;
+  camera.eye = camera.target - placing.distance * axes.forward;
   return camera;
 }
 

@@ -4,10 +4,56 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cstdint>
+#include <iterator>
+#include <memory>
+#include <utility>
 
 #include "core/error.h"
+#include "scene/fit_levels.h"
+#include "scene/geometry.h"
+#include "scene/transfer_function.h"
 
 namespace motes {
+namespace {
+
+std::shared_ptr<const Grid> find_grid(const FieldGrid& field,
+                                      const std::vector<LoadedGrid>& grids) {
+  const auto it = std::find_if(grids.begin(), grids.end(), [&](const LoadedGrid& loaded) {
+    return loaded.path == field.path && loaded.grid->name == field.array;
+  });
+  assert(it != grids.end());
+  return it->grid;
+}
+
+std::vector<Isosurface> fit_isosurfaces(const Grid& grid, const FieldColors& colors) {
+  const Signs signs = signs_of(grid.values);
+  const double level = enclosing_level(grid.values, signs);
+  if (signs == Signs::both) return {{level, colors.positive, 1}, {-level, colors.negative, 1}};
+  return {{signs == Signs::positive ? level : -level, colors.own, 1}};
+}
+
+}  // namespace
+
+FieldColors colors_of_grid(std::size_t number) {
+  // Of opposite hues in each pair.
+  constexpr std::pair<std::uint32_t, std::uint32_t> pairs[] = {
+      {0xe8702a, 0x2f6fe4}, {0x3fae49, 0xa24fd0}, {0xe3c12c, 0x1fa5b8}, {0xe0559c, 0x7d9a2c}};
+  const auto [positive, negative] = pairs[number % std::size(pairs)];
+  return {color_from_srgb(other_species_color(number + 1)), color_from_srgb(positive),
+          color_from_srgb(negative)};
+}
+
+void color_grids(std::vector<FieldSource>& sources) {
+  const auto is_grid = [](const FieldSource& source) { return source.grid != nullptr; };
+  const bool several = std::count_if(sources.begin(), sources.end(), is_grid) > 1;
+  std::size_t number = 0;
+  for (FieldSource& source : sources) {
+    if (!is_grid(source)) continue;
+    source.colors = colors_of_grid(number++);
+    source.colors.prefers_own = several;
+  }
+}
 
 void expand_grid_field(const Field& field, std::size_t k, const std::vector<LoadedGrid>& grids,
                        std::vector<Field>& out) {
@@ -29,9 +75,16 @@ void expand_grid_field(const Field& field, std::size_t k, const std::vector<Load
     }
     names = {field.grid->array};
   }
+  auto number = static_cast<std::size_t>(
+      std::count_if(out.begin(), out.end(), [](const Field& f) { return f.grid.has_value(); }));
   for (const std::string& name : names) {
     Field one = field;
     one.grid->array = name;
+    if (field.fitted_isosurfaces) {
+      one.isosurfaces = fit_isosurfaces(*find_grid(*one.grid, grids), colors_of_grid(number));
+      one.fitted_isosurfaces = false;
+    }
+    ++number;
     if (field.name.empty()) {
       one.name = name;
     } else if (names.size() > 1) {
@@ -42,13 +95,9 @@ void expand_grid_field(const Field& field, std::size_t k, const std::vector<Load
 }
 
 FieldSource grid_source(const Field& field, const std::vector<LoadedGrid>& grids) {
-  const auto it = std::find_if(grids.begin(), grids.end(), [&](const LoadedGrid& loaded) {
-    return loaded.path == field.grid->path && loaded.grid->name == field.grid->array;
-  });
-  assert(it != grids.end());
   FieldSource source;
   source.name = field.name;
-  source.grid = it->grid;
+  source.grid = find_grid(*field.grid, grids);
   source.interpolation = field.grid->interpolation;
   return source;
 }

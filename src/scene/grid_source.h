@@ -10,11 +10,15 @@ namespace motes {
 
 /// Appends to `out` the fields that number `k` of the scene's, which is a grid, comes to: one a
 /// grid of its file unless it says which, with the grids' names where it has none, or with them
-/// behind its own where there are several. Throws Error, which names the key.
+/// behind its own where there are several. Isosurfaces are fitted. Throws Error, which names the
+/// key.
 void expand_grid_field(const Field& field, std::size_t k, const std::vector<LoadedGrid>& grids,
                        std::vector<Field>& out);
 
 /// The source of an expanded field that is a grid. Precondition: its grid is there.
 FieldSource grid_source(const Field& field, const std::vector<LoadedGrid>& grids);
+
+/// Tells the grids among the sources apart by their colours.
+void color_grids(std::vector<FieldSource>& sources);
 
 }  // namespace motes

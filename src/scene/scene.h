@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -76,11 +77,14 @@ struct Field {
   std::optional<KernelShape> kernel_shape;
   std::variant<std::monostate, TransferFunction, NamedTransferFunction> transfer_function;
   std::vector<Isosurface> isosurfaces;
+  /// Of a grid: its isosurfaces are those that its values suggest; see expand_fields().
+  bool fitted_isosurfaces = false;
   bool operator==(const Field&) const = default;
 
   /// Where there are isosurfaces, only if a transfer function says how.
   bool draws_volume() const {
-    return isosurfaces.empty() || !std::holds_alternative<std::monostate>(transfer_function);
+    const bool has_isosurfaces = !isosurfaces.empty() || fitted_isosurfaces;
+    return !has_isosurfaces || !std::holds_alternative<std::monostate>(transfer_function);
   }
 };
 
@@ -140,6 +144,19 @@ struct LoadedGrid {
   std::shared_ptr<const Grid> grid;
 };
 
+/// What a field is drawn in where the scene says no more.
+struct FieldColors {
+  /// Display colour of the species that most of the field's particles are; of a grid one of its
+  /// own.
+  Color own;
+  /// Of values of both signs.
+  Color positive, negative;
+  /// Its own rather than a colour map, as the scene has several such fields to tell apart.
+  bool prefers_own = false;
+};
+/// Of a scene's grid with that number; of number 0 what is for both signs is for particles too.
+FieldColors colors_of_grid(std::size_t number);
+
 /// The particles of one field with all that its kernels need, checked: positions are finite, radii
 /// finite and > 0, weights finite. Particles that fail are left out, with a warning that counts
 /// them. Or the field's grid, and no particles.
@@ -155,7 +172,7 @@ struct FieldSource {
   std::vector<float> radius;
   std::vector<float> weight;        ///< one an index, or one for all
   bool colored_by_species = false;  ///< isosurfaces ask for the kernels' species
-  Color species_color;  ///< display colour of the species that most of its particles are
+  FieldColors colors = colors_of_grid(0);
   /// No field: particles that the tree has only since they are drawn. The last of the sources.
   bool drawn_only = false;
 
@@ -174,12 +191,22 @@ struct ResolvedScene {
   RenderSettings render;
 };
 
+/// What the file of a scene's data has.
+struct DataContents {
+  bool particles = true, grids = false;
+};
+/// Looks at the file of that path; a path may be empty.
+using LookAtData = std::function<DataContents(const std::filesystem::path&)>;
+
 /// Reads a scene file (docs/scene.md); relative paths are relative to it. Throws Error that names
 /// the file, the line where JSON itself is broken or the key ("fields[0].radius"), and what was
 /// expected; an unknown key names the nearest known one.
-Scene read_scene(const std::filesystem::path& path);
+/// What a style comes to is up to what `look` says of the data, which is called for nothing else;
+/// without it they are particles.
+Scene read_scene(const std::filesystem::path& path, const LookAtData& look = {});
 /// The same from text; `path` is for messages and for relative paths.
-Scene parse_scene(std::string_view json, const std::filesystem::path& path);
+Scene parse_scene(std::string_view json, const std::filesystem::path& path,
+                  const LookAtData& look = {});
 /// Whether `path` is a scene file, by its content or its name, and not a file of particles.
 bool is_scene_file(const std::filesystem::path& path);
 /// Reads what a field's "transfer_function" may be from a file of its own. Throws Error.
@@ -196,6 +223,8 @@ void color_by_species(Scene& scene, const ParticleSet& particles);
 /// The fields that a scene comes to with these particles and grids: one of all particles where it
 /// has none; a field with species_colors and several species becomes one field a species, and one
 /// of a file with several grids, if it does not say which, one field a grid; all have names.
+/// Fitted isosurfaces become those at the level that encloses 85 % of what the grid stands for
+/// (enclosing_level()): opaque, one, or where values are of both signs one of each sign.
 /// Throws Error, which names the key ("fields[1].radius: what") where a field asks for species,
 /// properties or grids that the data do not have.
 std::vector<Field> expand_fields(const Scene& scene, const ParticleSet& particles,

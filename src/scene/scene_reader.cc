@@ -210,6 +210,12 @@ Field read_field(const Value& value, const std::filesystem::path& directory) {
   value.with("transfer_function",
              [&](const Value& v) { field.transfer_function = read_transfer_function(v); });
   value.with("isosurfaces", [&](const Value& v) {
+    if (v.raw().is_string()) {
+      if (v.raw() != fitted_isosurfaces) v.expected("\"fitted\" or an array of isosurfaces");
+      if (!field.grid) v.fail("only those of grids are fitted; expected an array of isosurfaces");
+      field.fitted_isosurfaces = true;
+      return;
+    }
     field.isosurfaces = read_isosurfaces(v);
     const auto is_by_particles = [](const Isosurface& isosurface) {
       return isosurface.color && std::holds_alternative<ColorBy>(*isosurface.color);
@@ -373,23 +379,19 @@ void check_data_path(const Value& root, const Scene& scene) {
 }
 
 /// After fields and geometry.
-void read_style(const Value& value, Scene& scene) {
+void read_style(const Value& value, const LookAtData& look, Scene& scene) {
   const std::string name = value.text("the name of a style");
   if (!scene.geometry.empty()) value.fail("expected either a style or geometry, found both");
-  bool draws_fields = false;
   try {
-    draws_fields = style_draws_fields(name);
+    check_fields_of_style(name, scene.fields);
   } catch (const Error& error) {
     value.fail(error.what());
   }
-  if (!scene.fields.empty() && !draws_fields) {
-    value.fail(
-        fmt::format("expected no fields with the style '{}', which draws none of them", name));
-  }
-  apply_style(name, scene);
+  apply_style(name, scene,
+              look ? look(scene.data_path) : DataContents{.particles = !scene.data_path.empty()});
 }
 
-Scene read_root(const json& root, const std::filesystem::path& directory) {
+Scene read_root(const json& root, const std::filesystem::path& directory, const LookAtData& look) {
   const Value value(root, "");
   value.check_keys(
       {"version", "data", "camera", "kernel", "fields", "geometry", "style", "render"});
@@ -409,7 +411,7 @@ Scene read_root(const json& root, const std::filesystem::path& directory) {
     check_support_factors(v, scene);
   });
   value.with("geometry", [&](const Value& v) { scene.geometry = read_geometry(v); });
-  value.with("style", [&](const Value& v) { read_style(v, scene); });
+  value.with("style", [&](const Value& v) { read_style(v, look, scene); });
   value.with("render", [&](const Value& v) { read_render(v, scene.render); });
   check_data_path(value, scene);
   return scene;
@@ -432,16 +434,19 @@ Reconstruction interpolation_from_name(std::string_view name) {
   throw unknown_name("interpolation", name, {"trilinear", "tricubic", "tricubic_smoothing"});
 }
 
-Scene parse_scene(std::string_view text, const std::filesystem::path& path) {
+Scene parse_scene(std::string_view text, const std::filesystem::path& path,
+                  const LookAtData& look) {
   const json root = parse_json(text, path);
   try {
-    return read_root(root, path.parent_path());
+    return read_root(root, path.parent_path(), look);
   } catch (const Error& error) {
     throw Error(path, error.what());
   }
 }
 
-Scene read_scene(const std::filesystem::path& path) { return parse_scene(read_text(path), path); }
+Scene read_scene(const std::filesystem::path& path, const LookAtData& look) {
+  return parse_scene(read_text(path), path, look);
+}
 
 decltype(Field::transfer_function) read_transfer_function(const std::filesystem::path& path) {
   const json root = parse_json(read_text(path), path);

@@ -82,6 +82,7 @@ json to_json(const Field& field, const std::filesystem::path& directory) {
     out["transfer_function"] =
         std::visit([](const auto& f) { return to_json(f); }, field.transfer_function);
   }
+  if (field.fitted_isosurfaces) out["isosurfaces"] = fitted_isosurfaces;
   for (const Isosurface& isosurface : field.isosurfaces) {
     out["isosurfaces"].push_back(to_json(isosurface));
   }

@@ -1,5 +1,7 @@
 #include "scene/style.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "core/error.h"
@@ -9,9 +11,10 @@ namespace {
 
 struct Style {
   std::string_view name;
-  enum class Fields { none, own, surface } fields;  ///< own: the scene's
-  double ball_scale = 0;                            ///< of van der Waals radii; 0: no balls
-  double stick_radius = 0;                          ///< Å; 0: no sticks
+  /// own: the scene's; surfaces: of its grids, or else of the particles.
+  enum class Fields { none, own, surfaces } fields;
+  double ball_scale = 0;    ///< of van der Waals radii; 0: no balls
+  double stick_radius = 0;  ///< Å; 0: no sticks
 };
 
 // Sticks end in balls that are as wide as they are, or wider.
@@ -19,7 +22,7 @@ constexpr Style styles[] = {{"volume", Style::Fields::own},
                             {"spheres", Style::Fields::none, 1},
                             {"ball-and-stick", Style::Fields::none, 0.25, 0.15},
                             {"volume+balls", Style::Fields::own, 0.15, 0.08},
-                            {"surface", Style::Fields::surface}};
+                            {"surface", Style::Fields::surfaces}};
 
 /// The molecular surface of VMD's QuickSurf (docs/isosurface.md).
 Field quick_surf() {
@@ -42,6 +45,33 @@ const Style& find_style(std::string_view name) {
   return *found;
 }
 
+std::vector<Geometry> geometry_of(const Style& style) {
+  std::vector<Geometry> geometry;
+  if (style.ball_scale > 0) geometry.emplace_back().scale = style.ball_scale;
+  if (style.stick_radius > 0) {
+    Geometry& sticks = geometry.emplace_back();
+    sticks.type = Geometry::Type::sticks;
+    sticks.radius = style.stick_radius;
+  }
+  return geometry;
+}
+
+/// Isosurfaces of the scene's grids, with the data's particles as balls and sticks; without grids
+/// the molecular surface.
+void draw_surfaces(const DataContents& data, Scene& scene) {
+  std::erase_if(scene.fields, [](const Field& field) { return !field.grid; });
+  if (scene.fields.empty()) {
+    scene.fields = {quick_surf()};
+    return;
+  }
+  for (Field& field : scene.fields) {
+    field.transfer_function = {};
+    field.isosurfaces.clear();
+    field.fitted_isosurfaces = true;
+  }
+  if (data.particles) scene.geometry = geometry_of(find_style("ball-and-stick"));
+}
+
 }  // namespace
 
 const std::vector<std::string>& style_names() {
@@ -53,29 +83,27 @@ const std::vector<std::string>& style_names() {
   return names;
 }
 
-bool style_draws_fields(std::string_view name) {
-  return find_style(name).fields == Style::Fields::own;
+void check_fields_of_style(std::string_view name, const std::vector<Field>& fields) {
+  const Style::Fields drawn = find_style(name).fields;
+  const bool draws_grids = drawn == Style::Fields::surfaces;
+  const auto is_drawn = [&](const Field& field) {
+    return drawn == Style::Fields::own || (draws_grids && field.grid);
+  };
+  if (std::all_of(fields.begin(), fields.end(), is_drawn)) return;
+  throw Error(fmt::format("expected no fields{} with the style '{}', which draws none of them",
+                          draws_grids ? " of particles" : "", name));
 }
 
-std::vector<Geometry> geometry_of_style(std::string_view name) {
+void apply_style(std::string_view name, Scene& scene, const DataContents& data) {
   const Style& style = find_style(name);
-  std::vector<Geometry> geometry;
-  if (style.ball_scale > 0) geometry.emplace_back().scale = style.ball_scale;
-  if (style.stick_radius > 0) {
-    Geometry& sticks = geometry.emplace_back();
-    sticks.type = Geometry::Type::sticks;
-    sticks.radius = style.stick_radius;
-  }
-  return geometry;
-}
-
-void apply_style(std::string_view name, Scene& scene) {
-  scene.geometry = geometry_of_style(name);
-  const Style::Fields fields = find_style(name).fields;
-  if (fields == Style::Fields::surface) {
-    scene.fields = {quick_surf()};
-  } else if (fields == Style::Fields::none) {
+  scene.geometry = geometry_of(style);
+  if (style.fields == Style::Fields::none) {
     scene.fields.clear();
+    return;
+  }
+  if (scene.fields.empty() && data.grids) scene.fields.emplace_back().grid.emplace();
+  if (style.fields == Style::Fields::surfaces) {
+    draw_surfaces(data, scene);
   } else if (scene.fields.empty()) {
     scene.fields.emplace_back().name = "all";
   }

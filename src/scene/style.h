@@ -13,13 +13,11 @@ namespace motes {
 const std::vector<std::string>& style_names();
 
 /// Makes `scene` draw what the style names (docs/scene.md, "Styles"): the geometry becomes the
-/// style's own; fields stay where the style draws any, and there is one of all particles if there
-/// was none; those of "surface" are its own. Throws Error for an unknown name.
-void apply_style(std::string_view name, Scene& scene);
+/// style's own; fields stay where the style draws them, and if there is none it is the grids of the
+/// scene's data, or else all particles. Throws Error for an unknown name.
+void apply_style(std::string_view name, Scene& scene, const DataContents& data = {});
 
-/// The balls and sticks of a style. Throws Error for an unknown name.
-std::vector<Geometry> geometry_of_style(std::string_view name);
-/// Whether the style draws the scene's own fields. Throws Error for an unknown name.
-bool style_draws_fields(std::string_view name);
+/// Throws Error if a scene cannot have both the style and these fields, or for an unknown name.
+void check_fields_of_style(std::string_view name, const std::vector<Field>& fields);
 
 }  // namespace motes

@@ -236,6 +236,23 @@ TEST_F(CommandLine, WithoutOptionsThePictureIsNeitherEmptyNorABlock) {
   EXPECT_LT(opaque, seen / 2);
 }
 
+TEST_F(CommandLine, SticksThatLeaveTheCellAreInThePicture) {
+  workspace_.write("p.xyz",
+                   "2\nLattice=\"6 0 0 0 6 0 0 0 6\" Properties=species:S:1:pos:R:3\n"
+                   "C 0.6 3 3\nC 5.4 3 3\n");
+  succeed("render p.xyz -o p.npy --style ball-and-stick --size 64x64");
+  const std::vector<float> rgba = pixels("p.npy");
+  float seen = 0;
+  for (std::size_t y = 0; y < 64; ++y) {
+    for (std::size_t x = 0; x < 64; ++x) {
+      const float alpha = rgba[4 * (64 * y + x) + 3];
+      seen += alpha;
+      if (x == 0 || y == 0 || x == 63 || y == 63) EXPECT_EQ(alpha, 0) << x << " " << y;
+    }
+  }
+  EXPECT_GT(seen, 100);
+}
+
 TEST_F(CommandLine, StatisticsHaveEveryKey) {
   succeed("render a.xyz -o a.png --size 32x32 --stats s.json --repeat 3 --threads 1");
   const auto stats = nlohmann::json::parse(workspace_.read("s.json"));

@@ -93,6 +93,103 @@ TEST_F(Grids, AreWhatAStyleShowsOfTheirFile) {
   EXPECT_EQ(pixels("a.npy"), pixels("b.npy"));
 }
 
+TEST_F(Grids, HaveSurfacesAtFittedLevels) {
+  // Of layers of 0, 1 and 4 the last has 80 % of the sum: for 85 % it takes the one of 1 too.
+  succeed("render heat.nrrd -o a.npy --size 24x24 --style surface --save-scene a.json");
+  EXPECT_EQ(largest_opacity("a.npy"), 1);
+  auto scene = nlohmann::json::parse(workspace_.read("a.json"));
+  EXPECT_EQ(scene["fields"][0]["isosurfaces"].size(), 1u);
+  EXPECT_NEAR(scene["fields"][0]["isosurfaces"][0]["value"], 0.5, 0.01);
+  EXPECT_FALSE(scene["fields"][0].contains("transfer_function"));
+  EXPECT_FALSE(scene.contains("geometry"));
+  succeed("render a.json -o b.npy");
+  EXPECT_EQ(pixels("b.npy"), pixels("a.npy"));
+
+  workspace_.write("wave.nrrd", nrrd(repeated("-1 0 1", 9)));
+  succeed("render wave.nrrd -o c.npy --size 24x24 --style surface --save-scene c.json");
+  scene = nlohmann::json::parse(workspace_.read("c.json"));
+  ASSERT_EQ(scene["fields"][0]["isosurfaces"].size(), 2u);
+  EXPECT_EQ(scene["fields"][0]["isosurfaces"][0]["value"], 0.5);
+  EXPECT_EQ(scene["fields"][0]["isosurfaces"][1]["value"], -0.5);
+
+  // In a scene file too, and with the atoms where there are some.
+  workspace_.write("s.json", R"({"version": 1, "data": {"path": "h2.cube"}, "style": "surface"})");
+  succeed("render s.json -o d.npy --size 24x24");
+  succeed("render h2.cube -o e.npy --size 24x24 --style surface --save-scene e.json");
+  EXPECT_EQ(pixels("d.npy"), pixels("e.npy"));
+  scene = nlohmann::json::parse(workspace_.read("e.json"));
+  EXPECT_TRUE(scene["fields"][0].contains("grid"));
+  EXPECT_EQ(scene["geometry"].size(), 2u);
+}
+
+TEST_F(Grids, HaveSurfacesWhereChemistsDrawThem) {
+  const auto level = [this](const std::string& file, std::size_t field) {
+    const std::string path = MOTES_SOURCE_DIR "/data/density/" + file;
+    succeed("render " + path + " -o a.png --size 8x8 --style surface --save-scene a.json");
+    const auto scene = nlohmann::json::parse(workspace_.read("a.json"));
+    return scene["fields"][field]["isosurfaces"][0]["value"].get<double>();
+  };
+  EXPECT_NEAR(level("caffeine_orbitals.cube.xz", 0), 0.0295, 0.0002);
+  EXPECT_NEAR(level("quartz_density.cube.xz", 0), 0.0432, 0.0002);
+}
+
+TEST_F(Grids, LookTheSameInEveryEngineWhereverTheCameraIs) {
+  for (const std::string view : {"--eye 1.3,1.3,9 --target 1.3,1.3,1.3",     // outside
+                                 "--eye 1.3,1.2,1.1 --target 0,0.2,0.1",     // inside
+                                 "--eye 0,1.3,1.3 --target 1.3,1.3,1.3"}) {  // on a face
+    for (const std::string style : {"volume", "surface", "volume+balls", "ball-and-stick"}) {
+      for (const std::string engine : {"sweep", "coherent", "direct", "cells"}) {
+        succeed(
+            fmt::format("render h2.cube -o {}.npy --size 16x16 --fov 80 {} --style {} --engine {}",
+                        engine, view, style, engine));
+        EXPECT_EQ(pixels(engine + ".npy"), pixels("sweep.npy")) << view << style << engine;
+      }
+      if (style == "ball-and-stick") continue;  // from inside there may be nothing
+      EXPECT_GT(largest_opacity("sweep.npy"), 0.2) << view << style;
+    }
+  }
+}
+
+TEST_F(Grids, OutOfViewAreToldWithTheirAtoms) {
+  for (const std::string style : {"volume", "surface", "volume+balls", "ball-and-stick"}) {
+    EXPECT_THAT(
+        run("render h2.cube -o a.png --size 16x16 --eye 0,0,20 --target 0,0,40 --style " + style)
+            .err,
+        HasSubstr("motes: warning: nothing is in view"))
+        << style;
+  }
+}
+
+TEST_F(Grids, HaveTheirMemoryInTheStatistics) {
+  const auto grid_bytes = [this](const std::string& arguments) {
+    succeed("render " + arguments + " -o a.png --size 8x8 --stats s.json");
+    const auto stats = nlohmann::json::parse(workspace_.read("s.json"));
+    return stats.contains("grid_bytes") ? stats["grid_bytes"].get<std::size_t>() : 0;
+  };
+  const std::size_t once = grid_bytes("heat.nrrd");
+  EXPECT_GE(once, 5 * 5 * 5 * sizeof(float) + 2 * sizeof(float)) << "with a border, and one cell";
+  EXPECT_LT(once, 10000u);
+  workspace_.write("twice.json", R"({"version": 1, "fields": [
+      {"name": "a", "grid": "heat.nrrd"}, {"name": "b", "grid": "heat.nrrd"}]})");
+  EXPECT_EQ(grid_bytes("twice.json"), once);
+  workspace_.write("ways.json", R"({"version": 1, "fields": [
+      {"name": "a", "grid": "heat.nrrd"},
+      {"name": "b", "grid": {"path": "heat.nrrd", "interpolation": "tricubic"}}]})");
+  EXPECT_EQ(grid_bytes("ways.json"), 2 * once);
+  EXPECT_EQ(grid_bytes("a.xyz"), 0u);
+}
+
+TEST_F(Grids, OfOneFileHaveColoursOfTheirOwn) {
+  workspace_.write("s.json", R"({"version": 1, "fields": [
+      {"grid": "heat.nrrd"}, {"name": "again", "grid": "heat.nrrd"}]})");
+  succeed("render s.json -o a.png --size 24x24 --save-scene out.json");
+  const auto scene = nlohmann::json::parse(workspace_.read("out.json"));
+  const auto color = [&](std::size_t f) {
+    return scene["fields"][f]["transfer_function"]["points"][0]["color"];
+  };
+  EXPECT_NE(color(0), color(1));
+}
+
 TEST_F(Grids, ShareAPictureWithParticles) {
   workspace_.write("s.json", R"({"version": 1, "data": {"path": "a.xyz"}, "fields": [
       {"name": "atoms", "radius": 1}, {"grid": "heat.nrrd", "transfer_function": "magma"}]})");

@@ -62,6 +62,15 @@ TEST(CellGrid, StaysSmallWhereRadiiDifferByOrders) {
   EXPECT_LE(grid.begin.size(), 4 * kernels.size() + 4097);
 }
 
+TEST(CellGrid, HasNoCellsWhereNothingIsInAField) {
+  const ParticleSet particles = particles_at({{0, 0, 0}, {1, 2, 3}});
+  FieldSource drawn = field_of_all(particles, 1, 1, {});
+  drawn.drawn_only = true;
+  const KernelSet kernels = build_kernel_set(particles, {drawn});
+  ASSERT_EQ(kernels.size(), 2u);
+  EXPECT_EQ(build_cell_grid(kernels).cell_of({0, 0, 0}), -1);
+}
+
 TEST(CellGrid, KnowsWhatIsOutside) {
   const CellGrid grid = build_cell_grid(random_kernels(50, 0, 5));
   EXPECT_EQ(grid.cell_of(grid.corner + Vector3d{-1e-3, 0, 0}), -1);

@@ -108,6 +108,15 @@ TEST(Vasp, IsKnownByItsContent) {
   }
 }
 
+TEST(Vasp, VolumesByTheirNameAreGridsHoweverBad) {
+  for (const std::string& text : {std::string(structure), structure + "2 -1 3\n" + values}) {
+    for (const std::string name : {"CHGCAR", "AECCAR0.gz", "LOCPOT_bulk"}) {
+      const TemporaryFile file(name, text);
+      EXPECT_TRUE(is_grid_file(file.path())) << name;
+    }
+  }
+}
+
 TEST(Vasp, CutShortIsRefused) {
   expect_refused_when_cut("CHGCAR", density);
   // With what follows the first block, pieces that end behind it are good.

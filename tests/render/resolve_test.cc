@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <memory>
+
 #include "core/error.h"
 #include "scene/fit.h"
 #include "support/particles_at.h"
@@ -98,6 +100,32 @@ TEST_F(Resolve, FitsColoursToWhatTheCameraSees) {
   scene_.eye = {-3, 0.9, 10};
   scene_.target = {-3, 0.9, 0};
   EXPECT_LT(highest(), 0.6 * middle);  // near the kernel's edge
+}
+
+TEST_F(Resolve, ColoursIsosurfacesOfGridsBySign) {
+  Grid grid;
+  grid.dims = {2, 2, 2};
+  grid.steps = {Vector3d{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  grid.values.assign(8, 1);
+  std::vector<FieldSource> sources(1);
+  sources[0].grid = std::make_shared<const Grid>(grid);
+  const FieldColors& colors = sources[0].colors;
+  const KernelSet kernels = build_kernel_set({}, sources);
+  const auto colors_at = [&](const std::vector<Isosurface>& isosurfaces) {
+    fields_[0].grid.emplace();
+    fields_[0].isosurfaces = isosurfaces;
+    std::vector<Color> all;
+    for (const ResolvedIsosurface& surface :
+         resolve(scene_, {}, fields_, sources, {}, kernels, nullptr, make_grid_fields(sources))
+             .isosurfaces) {
+      all.push_back(surface.colors.at(0));
+    }
+    return all;
+  };
+  EXPECT_THAT(colors_at({{0.5, {}, 1}, {0.6, {}, 1}}),
+              testing::ElementsAre(colors.own, colors.own));
+  EXPECT_THAT(colors_at({{0.5, {}, 1}, {-0.5, {}, 1}}),
+              testing::ElementsAre(colors.positive, colors.negative));
 }
 
 TEST_F(Resolve, RefusesACameraThatCannotBe) {

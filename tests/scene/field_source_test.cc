@@ -278,7 +278,7 @@ TEST(ExpandFields, SpeciesColoursMakeAFieldOfEachSpecies) {
   EXPECT_EQ(fields[1].name, "O");
 
   Warnings warnings;
-  const Color oxygen = make_field_source(silica(), fields[1], {}, warnings).species_color;
+  const Color oxygen = make_field_source(silica(), fields[1], {}, warnings).colors.own;
   EXPECT_GT(oxygen.r, 4 * oxygen.g);
 }
 

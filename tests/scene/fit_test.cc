@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "scene/fit_levels.h"
 
 namespace motes {
 namespace {
@@ -52,12 +53,46 @@ RC_GTEST_PROP(FitCamera, ShowsTheWholeBoxAndFillsTheImage, ()) {
   const Bounds3d box{corner, corner + Vector3d{number(0, 999), number(0, 999), number(1, 999)}};
   const double aspect = number(4, 64);
   Scene scene;
-  // Much wider, and the nearest corner may come to lie in the eye before the image is full.
-  if (*rc::gen::arbitrary<bool>()) scene.fov_degrees = number(16, 1920);
+  if (*rc::gen::arbitrary<bool>()) scene.fov_degrees = number(16, 2870);
   if (*rc::gen::arbitrary<bool>()) scene.up = Vector3d{number(-99, 99), number(1, 99), 0};
-  const double extent = extent_in_image(fit_camera(scene, corners_of(box), aspect), aspect, box);
-  RC_ASSERT(extent > 0.9);
+  const Camera camera = fit_camera(scene, corners_of(box), aspect);
+  const double extent = extent_in_image(camera, aspect, box);
   RC_ASSERT(extent < 0.98);
+  double nearest = INFINITY;
+  for (const VisibleSphere& point : corners_of(box)) {
+    nearest = std::min(nearest, dot(point.center - camera.eye, camera_axes(camera).forward));
+  }
+  const bool is_as_near_as_may_be = nearest < 0.0501 * length(box.diagonal());
+  RC_ASSERT(extent > 0.9 || is_as_near_as_may_be);
+}
+
+RC_GTEST_PROP(FitCamera, ShowsAllHoweverWideTheView, ()) {
+  const auto number = [](int low, int high) { return *rc::gen::inRange(low, high) / 16.0; };
+  std::vector<VisibleSphere> spheres = corners_of({{-3, 5, 7}, {number(-32, 99), 9, 11}});
+  const double radius = number(0, 32);
+  Bounds3d box;
+  for (VisibleSphere& sphere : spheres) {
+    sphere.radius = radius;
+    for (const double r : {-radius, radius}) box.add(sphere.center + Vector3d{r, r, r});
+  }
+  const double diagonal = length(box.diagonal());
+  const double aspect = number(4, 64);
+  Scene scene;
+  scene.fov_degrees = 180 - std::pow(10, -number(-32, 208));
+  if (*rc::gen::arbitrary<bool>()) scene.target = {number(-64, 64), 7, 9};
+  const Camera camera = fit_camera(scene, spheres, aspect);
+  const CameraAxes axes = camera_axes(camera);
+  const double tan_y = std::tan(camera.fov_degrees * M_PI / 360);
+  for (const VisibleSphere& sphere : spheres) {
+    const Vector3d v = sphere.center - camera.eye;
+    const double depth = dot(v, axes.forward);
+    RC_ASSERT(depth - radius >= 0.05 * diagonal * (1 - 1e-6));
+    for (const auto& [across, tangent] :
+         {std::pair(axes.x, tan_y * aspect), std::pair(axes.y, tan_y)}) {
+      const double reach = std::abs(dot(v, across)) + radius * std::sqrt(1 + tangent * tangent);
+      RC_ASSERT(reach <= tangent * depth * (1 + 1e-6));
+    }
+  }
 }
 
 TEST(FitCamera, LooksAtTheLargestFace) {
@@ -195,6 +230,36 @@ TEST(VisibleSpheres, AreAsLargeAsGaussiansAreSeenAndNotOutsized) {
   EXPECT_EQ(visible_spheres(particles, fields)[0].radius, 3) << "nothing is beyond the support";
 }
 
+TEST(VisibleSpheres, HoldBallsWholeWhateverTheSizeOfOthers) {
+  ParticleSet particles;
+  for (auto* axis : {&particles.x, &particles.y, &particles.z}) axis->assign(5, 1);
+  GeometrySource geometry;
+  geometry.index = {0, 1, 2, 3, 4};
+  geometry.radius = {1, 1, 1, 1, 100};
+  EXPECT_EQ(visible_spheres(particles, {}, geometry).back().radius, 100);
+}
+
+TEST(VisibleSpheres, HoldSticksThatLeaveTheCell) {
+  ParticleSet particles;
+  particles.x = {1, 9, 5, 6, NAN};
+  particles.y = particles.z = {5, 5, 5, 5, 5};
+  particles.cell = Cell{{0, 0, 0}, {Vector3d{10, 0, 0}, {0, 10, 0}, {0, 0, 10}}};
+  GeometrySource geometry;
+  geometry.index = {0, 1, 2, 3};
+  geometry.radius.assign(4, 0.5f);
+  geometry.stick_radius = 0.25f;
+  geometry.bonds = {{2, 3}};
+  EXPECT_EQ(visible_spheres(particles, {}, geometry).size(), 4u);
+  geometry.bonds = {{0, 1}, {2, 3}, {2, 4}};
+  auto spheres = visible_spheres(particles, {}, geometry);
+  ASSERT_EQ(spheres.size(), 6u);
+  EXPECT_EQ(spheres[4].center, (Point3d{0, 5, 5}));
+  EXPECT_EQ(spheres[5].center, (Point3d{10, 5, 5}));
+  EXPECT_EQ(spheres[4].radius, 0.25);
+  particles.cell->periodic[0] = false;
+  EXPECT_EQ(visible_spheres(particles, {}, geometry).size(), 4u);
+}
+
 /// Rays through `make_value(ray, sample)`.
 template <class F>
 RayProfiles profiles_of(std::size_t rays, std::size_t samples, double spacing, F&& make_value) {
@@ -328,15 +393,67 @@ TEST(FitTransferFunction, RisesMoreSteeplyOverDecadesUnlessItsExtinctionIsGiven)
   }
 }
 
-TEST(FitTransferFunction, ValuesOfBothSignsAreSymmetricAboutZero) {
-  const RayProfiles profiles = profiles_of(300, 200, 0.1, [](std::size_t r, std::size_t k) {
-    return std::sin(0.1 * static_cast<double>(r + k));
+/// An orbital that falls off on both sides of a node.
+RayProfiles orbital() {
+  return profiles_of(400, 101, 0.02, [](std::size_t r, std::size_t k) {
+    const double past = 0.002 * static_cast<double>(r),
+                 along = 0.02 * (static_cast<double>(k) - 50);
+    return along * std::exp(-8 * (past * past + along * along));
   });
-  const TransferFunction f = fit_transfer_function({}, {}, profiles, 0.7);
-  EXPECT_EQ(f.points.front().value, -f.points.back().value);
-  EXPECT_EQ(f.points.front().extinction, f.points.back().extinction);
-  EXPECT_EQ(f.points[16].extinction, 0);
-  EXPECT_NEAR(mean_opacity(f, profiles), 0.7, 0.02);
+}
+
+TEST(FitTransferFunction, OfBothSignsHidesTheMiddleThatHardlyCounts) {
+  const RayProfiles profiles = orbital();
+  for (const std::string name : {"", "viridis", "species"}) {
+    decltype(Field::transfer_function) wish;
+    if (!name.empty()) wish = NamedTransferFunction{name, {}, {}, {}};
+    const TransferFunction f = fit_transfer_function(wish, {}, profiles, 0.7);
+    EXPECT_EQ(f.points.front().value, -f.points.back().value);
+    const double last = f.points.back().extinction;
+    double hidden = 0, all = 0;
+    for (const double v : profiles.values) {
+      EXPECT_NEAR(extinction_at(f, v), extinction_at(f, -v), 1e-6 * last);
+      all += v * v;
+      if (extinction_at(f, v) == 0) hidden += v * v;
+    }
+    EXPECT_NEAR(hidden / all, 0.15, 0.01) << name;
+    EXPECT_NEAR(mean_opacity(f, profiles), 0.7, 0.01) << name;
+    // Half of the extinction comes soon.
+    const auto* const first = &*std::find_if(
+        f.points.begin(), f.points.end(),
+        [&](const auto& point) { return point.value > 0 && point.extinction >= 0.499 * last; });
+    const double level = enclosing_level(profiles.values, Signs::both);
+    EXPECT_LT(first->value, level + 0.07 * (f.points.back().value - level)) << name;
+  }
+}
+
+TEST(FitTransferFunction, OfBothSignsHasAColourForEach) {
+  const Color orange{1, 0.5f, 0}, blue{0, 0.2f, 1};
+  const FieldColors colors{.own = {1, 1, 1}, .positive = orange, .negative = blue};
+  const TransferFunction f = fit_transfer_function({}, colors, orbital(), 0.7);
+  for (const double v : {0.01, 0.1, 1.0}) {
+    EXPECT_GT(color_at(f, v).r, color_at(f, v).b);
+    EXPECT_LT(color_at(f, -v).r, color_at(f, -v).b);
+  }
+}
+
+TEST(FitTransferFunction, TakesAFewNegativeValuesForNone) {
+  const RayProfiles clean = profiles_of(300, 200, 0.1, wavy);
+  const RayProfiles ringing = profiles_of(300, 200, 0.1, [](std::size_t r, std::size_t k) {
+    return wavy(r, k) > 0 ? wavy(r, k) : -1e-3;
+  });
+  EXPECT_EQ(fit_transfer_function({}, {}, ringing, 0.7), fit_transfer_function({}, {}, clean, 0.7));
+}
+
+TEST(FitTransferFunction, PrefersItsOwnColourWhereThereAreSeveral) {
+  const FieldColors colors{.own = {1, 0, 0}, .positive = {}, .negative = {}, .prefers_own = true};
+  const RayProfiles profiles = profiles_of(300, 200, 0.1, wavy);
+  EXPECT_EQ(
+      fit_transfer_function({}, colors, profiles, 0.7),
+      fit_transfer_function(NamedTransferFunction{"species", {}, {}, {}}, colors, profiles, 0.7));
+  EXPECT_EQ(
+      fit_transfer_function(NamedTransferFunction{"magma", {}, {}, {}}, colors, profiles, 0.7),
+      fit_transfer_function(NamedTransferFunction{"magma", {}, {}, {}}, {}, profiles, 0.7));
 }
 
 TEST(FitTransferFunction, KeepsWhatTheSceneSays) {
@@ -351,7 +468,8 @@ TEST(FitTransferFunction, KeepsWhatTheSceneSays) {
 TEST(FitTransferFunction, SpeciesColoursAreOneColourAndPalerAtTheEnd) {
   const Color red{1, 0, 0};
   const TransferFunction f = fit_transfer_function(NamedTransferFunction{"species", {}, {}, {}},
-                                                   red, profiles_of(300, 200, 0.1, wavy), 0.7);
+                                                   {.own = red, .positive = {}, .negative = {}},
+                                                   profiles_of(300, 200, 0.1, wavy), 0.7);
   EXPECT_EQ(f.points.front().color, red);
   EXPECT_EQ(f.points.back().color.r, 1);
   EXPECT_EQ(f.points.back().color.g, f.points.back().color.b);

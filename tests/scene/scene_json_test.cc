@@ -154,6 +154,26 @@ TEST(ParseScene, StylesAreGeometry) {
   EXPECT_EQ(parse_style(R"("volume")").fields.size(), 1u);
 }
 
+TEST(ParseScene, StylesAreOfWhatTheDataHave) {
+  const auto look = [](const std::filesystem::path& path) {
+    return DataContents{.particles = path != "dir/heat.nrrd", .grids = !path.empty()};
+  };
+  const auto parse_style = [&](const std::string& rest) {
+    return parse_scene(R"({"version": 1, )" + rest + "}", "dir/s.json", look);
+  };
+  Scene scene = parse_style(R"("data": {"path": "heat.nrrd"}, "style": "surface")");
+  EXPECT_TRUE(scene.fields.at(0).grid);
+  EXPECT_TRUE(scene.fields[0].fitted_isosurfaces);
+  EXPECT_TRUE(scene.geometry.empty());
+  scene =
+      parse_style(R"("data": {"path": "a.cube"}, "fields": [{"grid": {}}], "style": "surface")");
+  EXPECT_EQ(scene.geometry.size(), 2u);
+  // A scene without data.
+  scene = parse(R"({"version": 1, "fields": [{"grid": "heat.nrrd"}], "style": "surface"})");
+  EXPECT_TRUE(scene.geometry.empty());
+  EXPECT_TRUE(scene.fields.at(0).fitted_isosurfaces);
+}
+
 TEST(ParseScene, NamesTheLineOfBrokenJson) {
   EXPECT_THAT(message_of("{\"version\": 1,\n\n \"data\": }"),
               HasSubstr("dir/s.json:3: expected JSON: "));
@@ -215,7 +235,11 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{R"("fields": [{"isosurfaces": [{"value": 1, "color": "elements"}]}])",
                 "fields[0].isosurfaces[0].color: expected \"element\", \"species\" or a colour"},
         Refusal{R"("style": "surface", "fields": [{}])",
-                "style: expected no fields with the style 'surface'"},
+                "style: expected no fields of particles with the style 'surface'"},
+        Refusal{R"("fields": [{"isosurfaces": "fitted"}])",
+                "fields[0].isosurfaces: only those of grids are fitted; expected an array"},
+        Refusal{R"("fields": [{"grid": "a", "isosurfaces": "fit"}])",
+                "fields[0].isosurfaces: expected \"fitted\" or an array of isosurfaces"},
         Refusal{R"("camera": {"eye": [0, 1]})",
                 "camera.eye: expected an array of three numbers, found an array of 2"},
         Refusal{R"("camera": {"eye": [0, 1, "2"]})",
@@ -379,6 +403,7 @@ Field random_field(int number) {
     if (*rc::gen::arbitrary<bool>()) field.grid->array = random_text();
     field.grid->interpolation = *rc::gen::element(
         Reconstruction::trilinear, Reconstruction::tricubic, Reconstruction::tricubic_smoothing);
+    field.fitted_isosurfaces = *rc::gen::arbitrary<bool>();
     return field;
   }
   if (*rc::gen::arbitrary<bool>()) field.select.species = {random_text(), random_text()};

@@ -60,7 +60,7 @@ FieldSource joined(const std::vector<FieldSource>& sources) {
   field.name = "all";
   field.kernel = sources.front().kernel;
   field.normalise = sources.front().normalise;
-  field.species_color = sources.front().species_color;
+  field.colors = sources.front().colors;
   std::ranges::transform(all, std::back_inserter(field.index), &Particle::index);
   std::ranges::transform(all, std::back_inserter(field.radius), &Particle::radius);
   std::ranges::transform(all, std::back_inserter(field.weight), &Particle::weight);

@@ -31,6 +31,20 @@ it("brings the fields back that a style had taken away", () => {
   expect(withStyle(balls, "volume", [surface])).toEqual({ version: 1, style: "volume" });
 });
 
+it("makes surfaces of the grids that there are", () => {
+  const grid: Scene = { version: 1, fields: [{ grid: { array: "a" }, transfer_function: points }] };
+  const style = "surface";
+  expect(withStyle({ ...grid, fields: [...grid.fields!, { name: "b" }] }, style, [])).toEqual({
+    ...grid,
+    style,
+  });
+  expect(withStyle(balls, style, [grid])).toEqual({ ...grid, style });
+  expect(withStyle(volume, style, [])).toEqual({ version: 1, style });
+  const surfaces = { ...surface, fields: [{ grid: "a", isosurfaces: [{ value: 1 }] }] };
+  expect(styleOf({ ...surfaces, geometry: both.geometry })).toBe(style);
+  expect(styleOf({ ...surface, geometry: both.geometry })).toBe(null);
+});
+
 it("leaves no empty geometry", () => {
   expect(setGeometry(() => [])(balls)).toEqual({ version: 1, fields: [] });
 });

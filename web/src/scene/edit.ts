@@ -69,6 +69,8 @@ export function hasPoints(
 
 export const isVisible = (field: Field): boolean => field.visible !== false;
 
+const isGrid = (field: Field): boolean => field.grid !== undefined;
+
 /** Which style the scene is in, as far as one can tell; null: one of its own. */
 export function styleOf(scene: Scene): string | null {
   const types = new Set(scene.geometry?.map((item) => item.type));
@@ -76,7 +78,7 @@ export function styleOf(scene: Scene): string | null {
   const volume = fields.some((field) => field.transfer_function !== undefined);
   const surfaces = fields.some((field) => (field.isosurfaces?.length ?? 0) > 0);
   if (types.size === 0) return volume ? (surfaces ? null : "volume") : "surface";
-  if (surfaces) return null;
+  if (surfaces) return !volume && types.size === 2 && fields.every(isGrid) ? "surface" : null;
   if (volume) return types.size === 2 ? "volume+balls" : null;
   return types.has("sticks") ? "ball-and-stick" : "spheres";
 }
@@ -94,5 +96,7 @@ export function withStyle(scene: Scene, style: string, earlier: Scene[]): Scene 
   const kept = source && volume(source).map(({ isosurfaces: _, ...field }) => field);
   const drawsVolume = style === "volume" || style === "volume+balls";
   if (drawsVolume) return { ...rest, ...(kept && { fields: kept }), style };
+  const grids = (fields?.some(isGrid) ? fields : (kept ?? [])).filter(isGrid);
+  if (style === "surface" && grids.length > 0) return { ...rest, fields: grids, style };
   return { ...rest, style };
 }

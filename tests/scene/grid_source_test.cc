@@ -1,0 +1,83 @@
+// Fields that are grids: which there are, in what colours, with what surfaces.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <set>
+
+#include "scene/scene.h"
+#include "scene/transfer_function.h"
+
+namespace motes {
+namespace {
+
+LoadedGrid loaded(const std::string& name, const UninitializedVector<float>& values) {
+  Grid grid;
+  grid.name = name;
+  grid.dims = {values.size(), 1, 1};
+  grid.steps = {Vector3d{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  grid.values = values;
+  grid.periodic = true;
+  return {"", std::make_shared<const Grid>(std::move(grid))};
+}
+
+/// A scene of all grids of its data.
+Scene scene_of_grids() {
+  Scene scene;
+  scene.fields.emplace_back().grid.emplace();
+  return scene;
+}
+
+TEST(ExpandFields, FitsIsosurfacesOfGrids) {
+  Scene scene = scene_of_grids();
+  scene.fields[0].fitted_isosurfaces = true;
+  const auto fields =
+      expand_fields(scene, {},
+                    {loaded("density", {0, 0, 4}), loaded("orbital", {-3, 0, 3}),
+                     loaded("hole", {0, -4, 0}), loaded("other orbital", {-1, 0, 1})});
+  ASSERT_EQ(fields.size(), 4u);
+  for (const Field& field : fields) {
+    EXPECT_FALSE(field.fitted_isosurfaces);
+    EXPECT_FALSE(field.draws_volume());
+    for (const Isosurface& surface : field.isosurfaces) EXPECT_EQ(surface.opacity, 1);
+  }
+  const auto values = [&fields](std::size_t f) {
+    std::vector<double> all;
+    for (const Isosurface& surface : fields[f].isosurfaces) all.push_back(surface.value);
+    return all;
+  };
+  EXPECT_THAT(values(0), testing::ElementsAre(2));
+  EXPECT_THAT(values(1), testing::ElementsAre(1.5, -1.5));
+  EXPECT_THAT(values(2), testing::ElementsAre(-2));
+  EXPECT_THAT(values(3), testing::ElementsAre(0.5, -0.5));
+  std::set<std::uint32_t> colors;
+  for (const Field& field : fields) {
+    for (const Isosurface& surface : field.isosurfaces) {
+      colors.insert(color_to_srgb(std::get<Color>(surface.color.value())));
+    }
+  }
+  EXPECT_EQ(colors.size(), 6u) << "no two alike";
+}
+
+TEST(MakeFieldSources, TellsSeveralGridsApart) {
+  const std::vector<LoadedGrid> grids{loaded("a", {0, 1}), loaded("b", {0, 1}),
+                                      loaded("c", {0, 1})};
+  const auto sources_of = [](const std::vector<LoadedGrid>& some) {
+    Warnings warnings;
+    return make_field_sources({}, expand_fields(scene_of_grids(), {}, some), {}, warnings, nullptr,
+                              some);
+  };
+  EXPECT_FALSE(sources_of({grids[0]})[0].colors.prefers_own);
+  std::set<std::uint32_t> own, signs;
+  for (const FieldSource& source : sources_of(grids)) {
+    EXPECT_TRUE(source.colors.prefers_own);
+    own.insert(color_to_srgb(source.colors.own));
+    signs.insert(color_to_srgb(source.colors.positive));
+    signs.insert(color_to_srgb(source.colors.negative));
+  }
+  EXPECT_EQ(own.size(), 3u);
+  EXPECT_EQ(signs.size(), 6u);
+}
+
+}  // namespace
+}  // namespace motes

@@ -1,0 +1,79 @@
+// What a style makes of scenes of particles and of grids.
+#include "scene/style.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+
+namespace motes {
+namespace {
+
+using testing::ThrowsMessage;
+
+constexpr DataContents atoms{}, grids{.particles = false, .grids = true},
+    atoms_and_grids{.particles = true, .grids = true};
+
+Scene styled(const std::string& name, const DataContents& data, const std::vector<Field>& fields) {
+  Scene scene;
+  scene.fields = fields;
+  apply_style(name, scene, data);
+  return scene;
+}
+
+Field grid_field(const std::string& array) {
+  Field field;
+  field.grid.emplace().array = array;
+  return field;
+}
+
+TEST(ApplyStyle, ShowsTheGridsOfTheDataWhereThereAreNoFields) {
+  for (const std::string name : {"volume", "volume+balls", "surface"}) {
+    EXPECT_FALSE(styled(name, atoms, {}).fields.at(0).grid) << name;
+    const Scene scene = styled(name, atoms_and_grids, {});
+    ASSERT_EQ(scene.fields.size(), 1u);
+    EXPECT_EQ(scene.fields[0].grid, FieldGrid{}) << name;
+    EXPECT_EQ(scene.fields[0].fitted_isosurfaces, name == "surface");
+  }
+  EXPECT_TRUE(styled("spheres", atoms_and_grids, {}).fields.empty());
+}
+
+TEST(ApplyStyle, SurfacesOfGridsKeepThemAndHaveTheAtomsAmongThem) {
+  Field field = grid_field("b");
+  field.isosurfaces = {{3, {}, 1}};
+  field.transfer_function = NamedTransferFunction{"magma", {}, {}, {}};
+  const Scene scene = styled("surface", atoms_and_grids, {grid_field("a"), Field{}, field});
+  Field surfaces = grid_field("a");
+  surfaces.fitted_isosurfaces = true;
+  EXPECT_EQ(scene.fields[0], surfaces);
+  surfaces.grid->array = "b";
+  EXPECT_EQ(scene.fields[1], surfaces);
+  EXPECT_FALSE(scene.fields[1].draws_volume());
+  EXPECT_EQ(scene.fields.size(), 2u) << "the field of particles is none";
+  EXPECT_EQ(scene.geometry, styled("ball-and-stick", atoms, {}).geometry);
+  EXPECT_TRUE(styled("surface", grids, {}).geometry.empty());
+}
+
+TEST(ApplyStyle, SurfacesOfParticlesAreTheMolecularOne) {
+  const Scene scene = styled("surface", atoms, {Field{}});
+  ASSERT_EQ(scene.fields.size(), 1u);
+  EXPECT_EQ(scene.fields[0].isosurfaces, (std::vector<Isosurface>{{0.5, ColorBy::element, 1}}));
+  EXPECT_FALSE(scene.fields[0].fitted_isosurfaces);
+  EXPECT_TRUE(scene.geometry.empty());
+}
+
+TEST(CheckFieldsOfStyle, RefusesFieldsThatWouldNotBeDrawn) {
+  const std::vector<Field> of_grids{grid_field("a")}, of_both{grid_field("a"), Field{}};
+  EXPECT_NO_THROW(check_fields_of_style("volume", of_both));
+  EXPECT_NO_THROW(check_fields_of_style("surface", of_grids));
+  EXPECT_THAT([&] { check_fields_of_style("surface", of_both); },
+              ThrowsMessage<Error>("expected no fields of particles with the style 'surface', "
+                                   "which draws none of them"));
+  EXPECT_THAT([&] { check_fields_of_style("spheres", of_grids); },
+              ThrowsMessage<Error>(
+                  "expected no fields with the style 'spheres', which draws none of them"));
+  EXPECT_THROW(check_fields_of_style("blob", {}), Error);
+}
+
+}  // namespace
+}  // namespace motes
