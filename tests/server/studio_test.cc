@@ -66,7 +66,7 @@ std::string picture_of(const Scene& scene, const Camera& camera, int width, int 
 }
 
 TEST(Studio, KeepsUpWithTwoHoursOfEvents) {
-  const Scene scene = open_scene(zeolite);
+  Scene scene = open_scene(zeolite);
   Studio studio;
   const auto outlet = std::make_shared<EagerOutlet>(studio);
   studio.open({"zeolite", [scene] { return scene; }});
