@@ -24,9 +24,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// A client that takes longer over a request's header, or sends none, is left.
-constexpr auto header_timeout = 15s;
-constexpr auto answer_timeout = 120s;
 constexpr auto leave_timeout = 3s;
 constexpr std::uint32_t max_header_bytes = 16384;
 
@@ -107,7 +104,7 @@ class Reception : public Socket::Receiver {
 asio::awaitable<void> serve_socket(beast::tcp_stream stream, const Socket::Request& request,
                                    Site& site) {
   const ClientId id = ++site.last_client;
-  const auto socket = std::make_shared<Socket>(std::move(stream), id);
+  const auto socket = std::make_shared<Socket>(std::move(stream), id, site.options.timeouts);
   const bool too_many = site.sockets.size() >= site.options.max_clients;
   Reception reception(site);
   if (too_many) {
@@ -163,7 +160,7 @@ asio::awaitable<Answer> answer_to(const Target& target,
 }
 
 asio::awaitable<void> send(beast::tcp_stream& stream, Answer answer, unsigned version, bool head,
-                           bool keep_alive) {
+                           bool keep_alive, std::chrono::milliseconds timeout) {
   http::response<http::string_body> response{answer.status, version};
   set_common_headers(response);
   response.set(http::field::content_type, answer.type);
@@ -173,7 +170,7 @@ asio::awaitable<void> send(beast::tcp_stream& stream, Answer answer, unsigned ve
   response.prepare_payload();
   if (head) response.body().clear();
   http::response_serializer<http::string_body> serializer{response};
-  stream.expires_after(answer_timeout);
+  stream.expires_after(timeout);
   if (head) {
     co_await http::async_write_header(stream, serializer, asio::use_awaitable);
   } else {
@@ -201,7 +198,7 @@ asio::awaitable<void> serve_requests(beast::tcp_stream& stream, Site& site) {
     http::request_parser<http::empty_body> parser;
     parser.header_limit(max_header_bytes);
     parser.body_limit(std::numeric_limits<std::uint64_t>::max());  // uploads have their own
-    stream.expires_after(header_timeout);
+    stream.expires_after(site.options.timeouts.request);
     co_await http::async_read_header(stream, buffer, parser, asio::use_awaitable);
     const auto& request = parser.get();
     Admission admission = admit(site, request);
@@ -221,7 +218,8 @@ asio::awaitable<void> serve_requests(beast::tcp_stream& stream, Site& site) {
     if (admission.target) {
       answer = co_await answer_to(*admission.target, parser, stream, buffer, site);
     }
-    co_await send(stream, std::move(answer), version, head, keep_alive);
+    co_await send(stream, std::move(answer), version, head, keep_alive,
+                  site.options.timeouts.taking);
   }
   co_await take_leave(stream);
 }

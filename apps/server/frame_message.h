@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -24,5 +25,7 @@ inline constexpr std::size_t frame_header_bytes = 36;
 
 /// The message: header and image.
 std::string frame_message(const FrameHeader& header, std::string_view image);
+/// The header of such a message; nullopt: it is none.
+std::optional<FrameHeader> parse_frame_header(std::string_view message);
 
 }  // namespace motes::server

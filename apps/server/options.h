@@ -1,6 +1,7 @@
 // What the user of `motes view` may choose of the server.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -8,6 +9,17 @@
 #include <vector>
 
 namespace motes::server {
+
+/// How long the server waits for a client before it leaves it.
+struct Timeouts {
+  std::chrono::milliseconds request{15'000};  ///< for a request's header whole, or for a next one
+  std::chrono::milliseconds upload{30'000};   ///< for more of a file
+  /// For an answer or a message to be taken whole, and for a frame to be acknowledged.
+  std::chrono::milliseconds taking{120'000};
+  /// For a word on a socket; after half of it there is a ping, which any browser answers, and which
+  /// keeps proxies from cutting the line.
+  std::chrono::milliseconds silence{40'000};
+};
 
 struct ServerOptions {
   std::string address = "127.0.0.1";  ///< to listen on
@@ -17,6 +29,7 @@ struct ServerOptions {
   std::string token;                  ///< that clients must know; empty: a random one
   std::size_t max_clients = 16;
   std::uint64_t max_upload_bytes = std::uint64_t{4} << 30;
+  Timeouts timeouts;
 };
 
 }  // namespace motes::server

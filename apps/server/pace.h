@@ -13,7 +13,9 @@ namespace motes::server {
 class Pace {
  public:
   static constexpr double smallest = 0.125;
-  static constexpr double budget_ms = 45;  ///< 22 frames a second, with room for the way there
+  /// A move waits for the picture under way, then for its own: twice this, with what the way takes,
+  /// is less than 80 ms.
+  static constexpr double budget_ms = 36;
 
   /// In [smallest, 1], in steps.
   double scale() const;

@@ -1,40 +1,39 @@
 // Two coroutines a socket: one reads, one writes what has been queued.
 #include "server/socket.h"
 
-#include <fmt/format.h>
-
-#include <chrono>
+#include <utility>
+#include <variant>
 
 #include "core/error.h"
+#include "server/frame_message.h"
 
 namespace motes::server {
 namespace {
-
-using namespace std::chrono_literals;
 
 /// A mouse gives at most some hundred events a second.
 constexpr double messages_per_second = 300, message_burst = 600;
 /// A client that lets more than this wait is not listening.
 constexpr std::size_t max_waiting_bytes = std::size_t{16} << 20;
 
-websocket::stream_base::timeout timeouts() {
-  websocket::stream_base::timeout timeouts{};
-  timeouts.handshake_timeout = 10s;
-  // Half of it without a word and a ping is sent, which keeps proxies from cutting the line.
-  timeouts.idle_timeout = 40s;
-  timeouts.keep_alive_pings = true;
-  return timeouts;
+websocket::stream_base::timeout of_stream(const Timeouts& timeouts) {
+  websocket::stream_base::timeout out{};
+  out.handshake_timeout = timeouts.request;
+  out.idle_timeout = timeouts.silence;
+  out.keep_alive_pings = true;
+  return out;
 }
 
 }  // namespace
 
-Socket::Socket(beast::tcp_stream stream, ClientId id)
+Socket::Socket(beast::tcp_stream stream, ClientId id, const Timeouts& timeouts)
     : stream_(std::move(stream)),
       id_(id),
       rate_(messages_per_second, message_burst),
-      something_to_write_(stream_.get_executor(), asio::steady_timer::time_point::max()) {
+      something_to_write_(stream_.get_executor(), asio::steady_timer::time_point::max()),
+      taking_(stream_.get_executor(), timeouts.taking),
+      acknowledgement_(stream_.get_executor(), timeouts.taking) {
   beast::get_lowest_layer(stream_).expires_never();  // the WebSocket has its own timeouts
-  stream_.set_option(timeouts());
+  stream_.set_option(of_stream(timeouts));
   stream_.read_message_max(max_message_bytes);
 }
 
@@ -46,6 +45,7 @@ asio::awaitable<void> Socket::run(const Request& request, Receiver& receiver) {
       asio::detached);
   co_await read_all(receiver);
   ended_ = true;
+  acknowledgement_.stop();
   wake();
 }
 
@@ -63,7 +63,9 @@ asio::awaitable<void> Socket::read_all(Receiver& receiver) {
       if (!rate_.take(RateLimit::Clock::now())) throw Error("too many messages");
       if (!stream_.got_text()) throw Error("expected text");
       const auto data = buffer.cdata();
-      receiver.receive(*this, parse_message({static_cast<const char*>(data.data()), data.size()}));
+      const Message message = parse_message({static_cast<const char*>(data.data()), data.size()});
+      if (const auto* ack = std::get_if<AckMessage>(&message)) acknowledged(ack->frame);
+      receiver.receive(*this, message);
     } catch (const Error& error_of_client) {
       close(close_malformed, error_of_client.what());
     }
@@ -75,27 +77,48 @@ asio::awaitable<void> Socket::write_all() {
   const auto self = shared_from_this();
   while (!ended_) {
     boost::system::error_code error;
-    const auto into_error = [&error] { return asio::redirect_error(asio::use_awaitable, error); };
     if (!texts_.empty()) {
-      const std::string text = std::move(texts_.front());
+      std::string text = std::move(texts_.front());
       texts_.pop_front();
       text_bytes_ -= text.size();
-      stream_.text(true);
-      co_await stream_.async_write(asio::buffer(text), into_error());
+      co_await write_text(std::move(text), error);
     } else if (close_reason_) {
-      co_await stream_.async_close(*close_reason_, into_error());
+      co_await stream_.async_close(*close_reason_,
+                                   asio::redirect_error(asio::use_awaitable, error));
       co_return;
     } else if (frame_) {
-      const std::string frame = *std::exchange(frame_, std::nullopt);
-      stream_.binary(true);
-      co_await stream_.async_write(asio::buffer(frame), into_error());
+      co_await write_frame(*std::exchange(frame_, std::nullopt), error);
     } else {
       something_to_write_.expires_at(asio::steady_timer::time_point::max());
-      co_await something_to_write_.async_wait(into_error());
+      co_await something_to_write_.async_wait(asio::redirect_error(asio::use_awaitable, error));
       continue;  // woken by an "error"
     }
     if (error) co_return cut();
   }
+}
+
+asio::awaitable<void> Socket::write_text(std::string text, boost::system::error_code& error) {
+  stream_.text(true);
+  taking_.start(too_late());
+  co_await stream_.async_write(asio::buffer(text),
+                               asio::redirect_error(asio::use_awaitable, error));
+  taking_.stop();
+}
+
+/// Only the client's word tells that a frame has arrived: the system takes much that nobody reads.
+asio::awaitable<void> Socket::write_frame(std::string frame, boost::system::error_code& error) {
+  stream_.binary(true);
+  if (newest_frame_ <= acknowledged_) acknowledgement_.start(too_late());
+  newest_frame_ = parse_frame_header(frame).value().frame;
+  co_await stream_.async_write(asio::buffer(frame),
+                               asio::redirect_error(asio::use_awaitable, error));
+}
+
+void Socket::acknowledged(std::uint32_t frame) {
+  if (frame <= acknowledged_) return;
+  acknowledged_ = frame;
+  acknowledgement_.stop();
+  if (newest_frame_ > acknowledged_) acknowledgement_.start(too_late());
 }
 
 void Socket::close(websocket::close_code code, std::string_view reason) {
@@ -127,6 +150,7 @@ void Socket::wake() { something_to_write_.cancel(); }
 
 void Socket::cut() {
   ended_ = true;
+  acknowledgement_.stop();
   beast::get_lowest_layer(stream_).socket().close();
   wake();
 }

@@ -1,6 +1,8 @@
 // A page's WebSocket: messages in, answers and frames out.
 #pragma once
 
+#include <chrono>
+#include <cstdint>
 #include <deque>
 #include <memory>
 #include <optional>
@@ -8,10 +10,32 @@
 
 #include "server/asio.h"
 #include "server/messages.h"
+#include "server/options.h"
 #include "server/outlet.h"
 #include "server/rate_limit.h"
 
 namespace motes::server {
+
+/// Calls something if it is not stopped in time.
+class Deadline {
+ public:
+  Deadline(const asio::any_io_executor& executor, std::chrono::milliseconds time)
+      : timer_(executor), time_(time) {}
+
+  /// From now on, whatever was before. `missed` holds what it needs.
+  template <class Missed>
+  void start(Missed missed) {
+    timer_.expires_after(time_);
+    timer_.async_wait([missed = std::move(missed)](const boost::system::error_code& stopped) {
+      if (!stopped) missed();
+    });
+  }
+  void stop() { timer_.cancel(); }
+
+ private:
+  asio::steady_timer timer_;
+  const std::chrono::milliseconds time_;
+};
 
 class Socket : public Outlet, public std::enable_shared_from_this<Socket> {
  public:
@@ -26,7 +50,7 @@ class Socket : public Outlet, public std::enable_shared_from_this<Socket> {
     virtual void receive(Socket& from, const Message& message) = 0;
   };
 
-  Socket(beast::tcp_stream stream, ClientId id);
+  Socket(beast::tcp_stream stream, ClientId id, const Timeouts& timeouts);
 
   ClientId id() const { return id_; }
   /// Accepts the upgrade and hands messages to `receiver` until either side closes.
@@ -40,6 +64,13 @@ class Socket : public Outlet, public std::enable_shared_from_this<Socket> {
  private:
   asio::awaitable<void> read_all(Receiver& receiver);
   asio::awaitable<void> write_all();
+  asio::awaitable<void> write_text(std::string text, boost::system::error_code& error);
+  asio::awaitable<void> write_frame(std::string frame, boost::system::error_code& error);
+  void acknowledged(std::uint32_t frame);
+  /// For Deadline: cut().
+  auto too_late() {
+    return [self = shared_from_this()] { self->cut(); };
+  }
   void wake();
   /// Ends the connection at once, without a word.
   void cut();
@@ -54,6 +85,9 @@ class Socket : public Outlet, public std::enable_shared_from_this<Socket> {
   std::optional<websocket::close_reason> close_reason_;
   asio::steady_timer something_to_write_;
   bool ended_ = false;
+  // What the client owes.
+  Deadline taking_, acknowledgement_;
+  std::uint32_t newest_frame_ = 0, acknowledged_ = 0;
 };
 
 /// Application's own close codes.

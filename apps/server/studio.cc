@@ -156,13 +156,13 @@ void Studio::make_picture(Viewer& viewer, const FramePlan& plan) {
   try {
     // A moving picture that cannot be smaller is waited for, however late.
     const bool breakable = !plan.moving || plan.scale > Pace::smallest;
+    const std::atomic<bool>* cancel = breakable ? &break_off_ : nullptr;
     document_->render(viewer.camera(), scaled(viewer.width()), scaled(viewer.height()),
-                      plan.final ? FrameQuality{} : preview, breakable ? &break_off_ : nullptr,
-                      image_, &statistics_);
-    end();
+                      plan.final ? FrameQuality{} : preview, cancel, image_, &statistics_);
     const RenderSettings& settings = document_->scene().render;
     viewer.send(plan, image_, settings.termination_opacity, settings.background,
-                stopwatch.milliseconds());
+                stopwatch.milliseconds(), cancel);
+    end();
   } catch (const Cancelled&) {
     end();
     viewer.broken_off(plan, stopwatch.milliseconds());

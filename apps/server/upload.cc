@@ -14,10 +14,6 @@
 namespace motes::server {
 namespace {
 
-using namespace std::chrono_literals;
-
-/// Of a client that sends nothing for so long the file is given up.
-constexpr auto stall_timeout = 30s;
 constexpr std::size_t max_uploads = 4;  ///< at a time
 constexpr std::size_t block_bytes = std::size_t{1} << 18;
 
@@ -64,12 +60,12 @@ class Counted {
 
 asio::awaitable<void> copy_body(http::request_parser<http::buffer_body>& parser,
                                 beast::tcp_stream& stream, beast::flat_buffer& buffer,
-                                PartialFile& file) {
+                                PartialFile& file, std::chrono::milliseconds timeout) {
   std::vector<char> block(block_bytes);
   while (!parser.is_done()) {
     parser.get().body().data = block.data();
     parser.get().body().size = block.size();
-    stream.expires_after(stall_timeout);
+    stream.expires_after(timeout);
     boost::system::error_code error;
     co_await http::async_read(stream, buffer, parser,
                               asio::redirect_error(asio::use_awaitable, error));
@@ -101,7 +97,7 @@ asio::awaitable<Answer> take_upload(const Target& target,
       http::response<http::empty_body> go_on{http::status::continue_, 11};
       co_await http::async_write(stream, go_on, asio::use_awaitable);
     }
-    co_await copy_body(parser, stream, buffer, file);
+    co_await copy_body(parser, stream, buffer, file, site.options.timeouts.upload);
     file.keep();
     const nlohmann::json path{{"path", place.string()}};
     co_return Answer{http::status::ok,

@@ -51,14 +51,14 @@ std::optional<Viewer::Clock::time_point> Viewer::next_change(Clock::time_point n
 }
 
 void Viewer::send(const FramePlan& plan, const Framebuffer& image, double termination_opacity,
-                  const Color& background, double render_ms) {
+                  const Color& background, double render_ms, const std::atomic<bool>* cancel) {
   const Stopwatch stopwatch;
   const DisplayImage shown = to_display(image, termination_opacity, background);
   const std::size_t pixels = image.num_pixels();
   FrameHeader header;
   std::string encoded;
   if (plan.final) {
-    encoded = encode_png(shown);
+    encoded = encode_png(shown, cancel);
     header.format = FrameFormat::png;
   } else {
     const int quality = link_.quality(pixels);

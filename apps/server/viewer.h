@@ -1,6 +1,7 @@
 // One who looks: what a client sees, and which picture it should get next.
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <memory>
@@ -60,9 +61,10 @@ class Viewer {
   /// When next() may have another answer though nothing has happened; nullopt: never.
   std::optional<Clock::time_point> next_change(Clock::time_point now) const;
 
-  /// The picture of a plan, over `background` as it is shown. Encodes and sends it.
+  /// The picture of a plan, over `background` as it is shown. Encodes and sends it. Throws
+  /// Cancelled soon after `cancel`, which may be null, becomes true.
   void send(const FramePlan& plan, const Framebuffer& image, double termination_opacity,
-            const Color& background, double render_ms);
+            const Color& background, double render_ms, const std::atomic<bool>* cancel);
   /// The picture of a plan was broken off after so long.
   void broken_off(const FramePlan& plan, double ms);
   /// The present view cannot be rendered: it is let be until something changes.

@@ -1,6 +1,7 @@
 // Images as the bytes of a file format, in memory.
 #pragma once
 
+#include <atomic>
 #include <string>
 
 #include "image/display.h"
@@ -8,8 +9,10 @@
 
 namespace motes {
 
-/// PNG, 8-bit RGB, marked as sRGB. Throws Error where the format cannot hold the image.
-std::string encode_png(const DisplayImage& image);
+/// PNG, 8-bit RGB, marked as sRGB. Throws Error where the format cannot hold the image, and
+/// Cancelled soon after `cancel`, which may be null, becomes true: a screen takes a fifth of a
+/// second.
+std::string encode_png(const DisplayImage& image, const std::atomic<bool>* cancel = nullptr);
 
 /// JPEG, without chroma subsampling. `quality` as libjpeg's, 1 to 100. Throws Error where the
 /// format cannot hold the image (more than 65500 pixels on a side).

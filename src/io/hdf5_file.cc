@@ -115,6 +115,11 @@ std::optional<std::vector<std::string>> strings(hid_t type, hid_t space, Read&& 
 
 }  // namespace
 
+Hdf5Handle::Hdf5Handle(std::int64_t id, Close close) : id_(id), close_(close) {
+  // The library cannot close itself after a thread that has ended with a failure on its record.
+  if (id < 0) H5Eclear2(H5E_DEFAULT);
+}
+
 Hdf5File::Hdf5File(const std::filesystem::path& path, const ReadOptions& options)
     : path_(path), file_(open_file(path, options)) {}
 

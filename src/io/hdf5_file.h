@@ -17,7 +17,7 @@ namespace motes {
 class Hdf5Handle {
  public:
   using Close = int (*)(std::int64_t);
-  Hdf5Handle(std::int64_t id, Close close) : id_(id), close_(close) {}
+  Hdf5Handle(std::int64_t id, Close close);
   ~Hdf5Handle() {
     if (id_ >= 0) close_(id_);
   }

@@ -416,6 +416,34 @@ TEST_F(Bench, Fig8AndFig9MakePictures) {
   }
 }
 
+TEST_F(Bench, ViewMovesLooksAndPicks) {
+  const Outcome outcome = measure("view zeolite '" MOTES_SOURCE_DIR "/data/demo/cosmology.json'");
+  EXPECT_EQ(outcome.err, "");
+  const auto table = result("view");
+  ASSERT_EQ(table["rows"].size(), 2U);
+  EXPECT_EQ(table["rows"][0]["scene"], "zeolite");
+  EXPECT_EQ(table["rows"][0]["particles"], 3494);
+  EXPECT_EQ(table["rows"][1]["scene"], "cosmology");
+  double slowest = 0;
+  for (const auto& row : table["rows"]) {
+    EXPECT_EQ(row["moves"], 120);  // each of them is seen in the end
+    const auto& latency = row["latency_ms"];
+    EXPECT_GT(latency["median"], 0);
+    EXPECT_LE(latency["median"], latency["percentile_95"]);
+    EXPECT_LE(latency["percentile_95"], latency["most"]);
+    slowest = std::max(slowest, latency["percentile_95"].get<double>());
+    EXPECT_GT(row["frames_per_second"], 0);
+    EXPECT_GT(row["pixels"], 0);
+    EXPECT_LE(row["pixels"], 1);
+    EXPECT_GT(row["full_ms"], 0);
+    EXPECT_GT(row["pick_ms"]["most"], 0);
+  }
+  EXPECT_EQ(table["summary"]["most_latency_ms_percentile_95"], slowest);
+  EXPECT_THAT(workspace_.read("out/bench/view.svg"), HasSubstr("cosmology"));
+  EXPECT_THAT(failure(std::string("bench table1 a.xyz") + data, 1),
+              HasSubstr("table1 takes scenes by their names; 'a.xyz' is a file"));
+}
+
 TEST_F(Bench, ASceneTooLargeForTheMemoryIsRefusedFirst) {
   for (const std::string what :
        {"scenes", "table1", "table2", "fields", "build", "limit", "threads", "spheres"}) {

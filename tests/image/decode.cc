@@ -6,12 +6,9 @@
 #include <ImfInputFile.h>
 #include <spng.h>
 
-#include <cstdio>  // before jpeglib.h, which needs it
 #include <cstring>
 #include <memory>
 #include <stdexcept>
-
-#include <jpeglib.h>
 
 namespace motes {
 
@@ -32,26 +29,6 @@ DisplayImage decode_png(const std::string& bytes) {
   if (spng_decode_image(context.get(), image.rgb.data(), size, SPNG_FMT_RGB8, 0) != 0) {
     throw std::runtime_error("broken PNG");
   }
-  return image;
-}
-
-DisplayImage decode_jpeg(const std::string& bytes) {
-  jpeg_decompress_struct info;
-  jpeg_error_mgr errors;
-  info.err = jpeg_std_error(&errors);
-  jpeg_create_decompress(&info);
-  jpeg_mem_src(&info, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
-  jpeg_read_header(&info, TRUE);
-  jpeg_start_decompress(&info);
-  DisplayImage image{static_cast<int>(info.output_width), static_cast<int>(info.output_height), {}};
-  const std::size_t row_bytes = std::size_t{3} * info.output_width;
-  image.rgb.resize(row_bytes * info.output_height);
-  while (info.output_scanline < info.output_height) {
-    JSAMPROW rows[] = {image.rgb.data() + row_bytes * info.output_scanline};
-    jpeg_read_scanlines(&info, rows, 1);
-  }
-  jpeg_finish_decompress(&info);
-  jpeg_destroy_decompress(&info);
   return image;
 }
 

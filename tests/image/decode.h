@@ -9,7 +9,6 @@
 namespace motes {
 
 DisplayImage decode_png(const std::string& bytes);
-DisplayImage decode_jpeg(const std::string& bytes);
 Framebuffer decode_exr(const std::string& bytes);
 
 }  // namespace motes

@@ -2,17 +2,24 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <atomic>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <fstream>
 #include <iterator>
 #include <limits>
 #include <random>
 #include <string>
+#include <vector>
 
 #include "core/error.h"
+#include "core/report.h"
 #include "decode.h"
 #include "image/compare.h"
+#include "image/decode_jpeg.h"
 #include "image/display.h"
 #include "image/encode.h"
 #include "image/write_image.h"
@@ -73,9 +80,33 @@ TEST(Display, ClampsWhatNoScreenShows) {
   EXPECT_EQ(to_display(one_pixel(nan, infinity, -3, 1), never_stopped, {}).rgb, (Rgb{0, 255, 0}));
 }
 
+TEST(Display, EveryChannelIsRoundedToTheNearest) {
+  // Of the floats from where all is 0 up to 1, one in so many.
+  constexpr std::uint32_t stride = 211;
+  std::vector<float> channels;
+  for (auto bits = std::bit_cast<std::uint32_t>(0x1p-14F);
+       bits < std::bit_cast<std::uint32_t>(1.0F); bits += stride) {
+    channels.push_back(std::bit_cast<float>(bits));
+  }
+  Framebuffer framebuffer(static_cast<int>(channels.size() / 3), 1);
+  for (std::size_t i = 0; i < framebuffer.num_pixels(); ++i) {
+    std::copy_n(&channels[3 * i], 3, &framebuffer.rgba[4 * i]);
+    framebuffer.rgba[4 * i + 3] = 1;
+  }
+  const DisplayImage image = to_display(framebuffer, never_stopped, {});
+  for (std::size_t i = 0; i < image.rgb.size(); ++i) {
+    const auto linear = static_cast<double>(channels[i]);
+    ASSERT_EQ(image.rgb[i], std::lround(255 * linear_to_srgb(linear))) << linear;
+  }
+}
+
 TEST(Png, ComesBackExactly) {
   const DisplayImage image = to_display(noise(), 0.97, {0.2F, 0.3F, 0.4F});
   EXPECT_EQ(decode_png(encode_png(image)), image);
+  std::atomic<bool> cancel = false;
+  EXPECT_EQ(encode_png(image, &cancel), encode_png(image));
+  cancel = true;
+  EXPECT_THROW(encode_png(image, &cancel), Cancelled);
 }
 
 TEST(Jpeg, ComesBackNearly) {
@@ -98,6 +129,8 @@ TEST(Jpeg, ComesBackNearly) {
     worst = std::max(worst, std::abs(int{image.rgb[i]} - int{back.rgb[i]}));
   }
   EXPECT_LE(worst, 12);
+  EXPECT_THROW(decode_jpeg(""), Error);
+  EXPECT_THROW(decode_jpeg("no JPEG"), Error);
 }
 
 TEST(Jpeg, RefusesWhatItCannotHold) {

@@ -7,29 +7,22 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
-#include <thread>
 
 #include "document/input.h"
 #include "server/asio.h"
-#include "server/files.h"
-#include "server/server.h"
-#include "server/studio.h"
+#include "server/background_server.h"
+#include "server/client.h"
 
 namespace motes::server {
 
 /// A few atoms in a folder of their own, served until the end of the test.
 class RunningServer {
  public:
-  explicit RunningServer(ServerOptions options = {})
-      : folder_(make_folder()), options_(std::move(options)), files_(folder_) {
-    server_.emplace(options_, studio_, files_);
+  explicit RunningServer(const ServerOptions& options = {}) : folder_(make_folder()) {
     Scene scene = open_scene(folder_ / "atoms.xyz");
-    studio_.open({"atoms.xyz", [scene] { return scene; }});
-    thread_ = std::thread([this] { server_->run(); });
+    server_.emplace(options, folder_, Opening{"atoms.xyz", [scene] { return scene; }});
   }
   ~RunningServer() {
-    server_->stop();
-    thread_.join();
     server_.reset();
     std::filesystem::remove_all(folder_);
   }
@@ -51,11 +44,7 @@ class RunningServer {
   }
 
   std::filesystem::path folder_;
-  const ServerOptions options_;
-  Files files_;
-  Studio studio_;
-  std::optional<Server> server_;
-  std::thread thread_;
+  std::optional<BackgroundServer> server_;
 };
 
 /// One answer to an HTTP request.
@@ -83,96 +72,17 @@ inline Reply request(const RunningServer& server, http::verb method, const std::
   return {static_cast<int>(parser.get().result_int()), parser.get().body(), parser.get().base()};
 }
 
-/// A page, as far as the server can tell.
-class TestClient {
+/// A page that looks at the atoms.
+class TestClient : public Client {
  public:
-  explicit TestClient(const RunningServer& server, const std::string& token = "")
-      : socket_(context_) {
-    beast::get_lowest_layer(socket_).connect({asio::ip::make_address("127.0.0.1"), server.port()});
-    socket_.set_option(websocket::stream_base::decorator([](websocket::request_type& request) {
-      request.set(http::field::origin, "http://127.0.0.1");
-    }));
-    socket_.handshake("127.0.0.1", "/socket?token=" + (token.empty() ? server.token() : token));
-  }
+  explicit TestClient(const RunningServer& server) : Client(server.port(), server.token()) {}
 
-  void send(const std::string& text) {
-    socket_.text(true);
-    socket_.write(asio::buffer(text));
-  }
-  /// The next message; throws boost::system::system_error once the server has closed.
-  std::string read() {
-    beast::flat_buffer buffer;
-    socket_.read(buffer);
-    is_text_ = socket_.got_text();
-    return beast::buffers_to_string(buffer.data());
-  }
-  /// The next text of a type; frames on the way are acknowledged.
-  nlohmann::json wait_for(const std::string& type) {
-    while (true) {
-      const std::string message = read();
-      if (!is_text_) {
-        acknowledge(message);
-        continue;
-      }
-      nlohmann::json text = nlohmann::json::parse(message);
-      if (text.at("type") == type) return text;
-    }
-  }
-  /// The next frame, acknowledged if that is wanted.
-  std::string wait_for_frame(bool acknowledged = true) {
-    while (true) {
-      std::string message = read();
-      if (is_text_) continue;
-      if (acknowledged) acknowledge(message);
-      return message;
-    }
-  }
-  /// The next full picture.
-  std::string wait_for_final() {
-    while (true) {
-      std::string frame = wait_for_frame();
-      if (number(frame, 18, 2) == 1) return frame;
-    }
-  }
-  /// A little-endian number of a frame's header.
-  static std::uint32_t number(const std::string& frame, std::size_t at, std::size_t bytes = 4) {
-    std::uint32_t value = 0;
-    for (std::size_t i = bytes; i-- > 0;) {
-      value = value << 8 | static_cast<unsigned char>(frame.at(at + i));
-    }
-    return value;
-  }
-  void set_size(int width, int height) {
-    send(nlohmann::json{{"type", "size"}, {"width", width}, {"height", height}}.dump());
-  }
+  /// From the side by `x`.
   void look(std::uint32_t sequence, double x, bool moving) {
-    send(nlohmann::json{
-        {"type", "view"},
-        {"sequence", sequence},
-        {"moving", moving},
-        {"camera",
-         {{"eye", {x, 0.3, 12}}, {"target", {0.3, 0.3, 0}}, {"up", {0, 1, 0}}, {"fov", 30}}}}
-             .dump());
+    Client::look(sequence,
+                 {{"eye", {x, 0.3, 12}}, {"target", {0.3, 0.3, 0}}, {"up", {0, 1, 0}}, {"fov", 30}},
+                 moving);
   }
-  /// The code with which the server closes, after whatever it still says.
-  int wait_for_close() {
-    try {
-      while (true) read();
-    } catch (const boost::system::system_error&) {
-      return static_cast<int>(socket_.reason().code);
-    }
-  }
-  /// Goes without a word, as a killed browser does.
-  void vanish() { beast::get_lowest_layer(socket_).socket().close(); }
-
- private:
-  void acknowledge(const std::string& frame) {
-    send(nlohmann::json{{"type", "ack"}, {"frame", number(frame, 4)}}.dump());
-  }
-
-  asio::io_context context_;
-  websocket::stream<beast::tcp_stream> socket_;
-  bool is_text_ = false;
 };
 
 }  // namespace motes::server

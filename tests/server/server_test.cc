@@ -5,6 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <filesystem>
+#include <iterator>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -16,6 +19,10 @@ namespace {
 using testing::HasSubstr;
 using testing::StartsWith;
 
+std::size_t count_entries(const std::filesystem::path& folder) {
+  return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder), {}));
+}
+
 TEST(Server, GivesNothingWithoutTheToken) {
   const RunningServer server;
   for (const std::string target : {"/", "/socket", "/picture?client=1&width=9&height=9&format=png",
@@ -23,7 +30,7 @@ TEST(Server, GivesNothingWithoutTheToken) {
     EXPECT_EQ(request(server, http::verb::get, target).status, 403) << target;
   }
   EXPECT_EQ(request(server, http::verb::post, "/upload?name=a.xyz", "1\n").status, 403);
-  EXPECT_THROW(TestClient(server, "wrong"), boost::system::system_error);
+  EXPECT_THROW(Client(server.port(), "wrong"), boost::system::system_error);
 }
 
 TEST(Server, KnowsItsNamesAndItsOwnPages) {
@@ -62,18 +69,17 @@ TEST(Server, ShowsTheSceneAndThenTheFullPicture) {
   EXPECT_EQ(scene.at("data").at("particles"), 3);
   client.set_size(64, 48);
   client.look(5, 1, false);
-  std::string frame;
+  ReceivedFrame frame;
   do frame = client.wait_for_final();
-  while (TestClient::number(frame, 8) != 5);
-  EXPECT_EQ(frame.substr(0, 4), "MTF1");
-  EXPECT_EQ(TestClient::number(frame, 20), 64U);
-  EXPECT_EQ(TestClient::number(frame, 24), 48U);
+  while (frame.header.view_sequence != 5);
+  EXPECT_EQ(frame.header.width, 64U);
+  EXPECT_EQ(frame.header.height, 48U);
   // The picture that is saved is the one that is seen.
   const Reply picture =
       request(server, http::verb::get,
               "/picture?client=1&width=64&height=48&format=png&token=" + server.token());
   EXPECT_EQ(picture.status, 200);
-  EXPECT_EQ(picture.body, frame.substr(36));
+  EXPECT_EQ(picture.body, frame.image);
 }
 
 TEST(Server, GivesSlowClientsFewerFramesAndNoLateOnes) {
@@ -82,26 +88,25 @@ TEST(Server, GivesSlowClientsFewerFramesAndNoLateOnes) {
   client.wait_for("scene");
   client.set_size(64, 48);
   for (std::uint32_t i = 1; i <= 50; ++i) client.look(i, 1 + 0.01 * i, true);
-  const std::string first = client.wait_for_frame(false);
+  std::uint32_t newest = client.wait_for_frame(false).header.frame;
   client.look(51, 3, false);
   // No more than another one comes until one is acknowledged, and answers do not wait for that.
   int frames = 1;
-  std::uint32_t newest = TestClient::number(first, 4);
   for (int answer = 0; answer < 20; ++answer) {
     client.send(R"({"type":"statistics"})");
     while (true) {
-      const std::string message = client.read();
-      if (message.starts_with("MTF1")) {
+      const std::string message = client.read().value();
+      if (const auto frame = parse_frame_header(message)) {
         ++frames;
-        newest = TestClient::number(message, 4);
+        newest = frame->frame;
       } else if (message.find("\"statistics\"") != message.npos) {
         break;
       }
     }
   }
   EXPECT_LE(frames, 2);
-  client.send(nlohmann::json{{"type", "ack"}, {"frame", newest}}.dump());
-  EXPECT_EQ(TestClient::number(client.wait_for_frame(), 8), 51U);
+  client.acknowledge(newest);
+  EXPECT_EQ(client.wait_for_frame().header.view_sequence, 51U);
 }
 
 TEST(Server, ClosesTheClientThatSaysNonsenseAndNoOther) {
@@ -191,17 +196,22 @@ TEST(Server, OutlivesThousandClientsThatComeAndGo) {
   ServerOptions options;
   options.max_clients = 1001;  // of some it may not have heard yet that they have gone
   const RunningServer server(options);
-  for (int i = 0; i < 1000; ++i) {
-    TestClient client(server);
-    client.set_size(16, 16);
-    if (i % 3 == 0) client.look(1, 1, true);
-    if (i % 2 == 0) client.vanish();
-  }
   TestClient client(server);
   client.wait_for("scene");
   client.set_size(16, 16);
   client.look(1, 1, false);
-  while (TestClient::number(client.wait_for_final(), 8) != 1) {
+  while (client.wait_for_final().header.view_sequence != 1) {
+  }
+  const std::size_t threads = count_entries("/proc/self/task");
+  const std::size_t descriptors = count_entries("/proc/self/fd");
+  for (int i = 0; i < 1000; ++i) {
+    TestClient passing(server);
+    passing.set_size(16, 16);
+    if (i % 3 == 0) passing.look(1, 1, true);
+    if (i % 2 == 0) passing.close();  // the others vanish
+  }
+  client.look(2, 2, false);
+  while (client.wait_for_final().header.view_sequence != 2) {
   }
   // Those that have gone are forgotten.
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(30);
@@ -209,8 +219,11 @@ TEST(Server, OutlivesThousandClientsThatComeAndGo) {
   do {
     client.send(R"({"type":"statistics"})");
     clients = client.wait_for("statistics").at("clients");
-  } while (clients != 1 && std::chrono::steady_clock::now() < deadline);
+  } while ((clients != 1 || count_entries("/proc/self/fd") != descriptors) &&
+           std::chrono::steady_clock::now() < deadline);
   EXPECT_EQ(clients, 1);
+  EXPECT_EQ(count_entries("/proc/self/fd"), descriptors);
+  EXPECT_EQ(count_entries("/proc/self/task"), threads);
 }
 
 }  // namespace

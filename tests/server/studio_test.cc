@@ -9,8 +9,10 @@
 #include <mutex>
 #include <string>
 
+#include "document/document.h"
 #include "document/input.h"
-#include "server/running_server.h"
+#include "image/encode.h"
+#include "server/frame_message.h"
 
 namespace motes::server {
 namespace {
@@ -22,20 +24,20 @@ class EagerOutlet : public Outlet {
 
   void send_text(std::string /*text*/) override {}
   void send_frame(std::string message) override {
-    studio_.handle(1, AckMessage{TestClient::number(message, 4)});
+    const FrameHeader header = parse_frame_header(message).value();
+    studio_.handle(1, AckMessage{header.frame});
     const std::lock_guard lock(mutex_);
-    const std::uint32_t view = TestClient::number(message, 8);
-    stale_ = stale_ || view < view_;
-    view_ = view;
-    final_ = TestClient::number(message, 18, 2) == 1;
-    ++frames_;
+    stale_ = stale_ || header.view_sequence < last_.view_sequence;
+    last_ = header;
+    image_ = message.substr(frame_header_bytes);
     changed_.notify_all();
   }
-  /// Waits until the full picture of that view is there; false: it took too long.
-  bool wait_for_final(std::uint32_t view) {
+  /// Waits for the full picture of that view; "": it took too long.
+  std::string wait_for_final(std::uint32_t view) {
     std::unique_lock lock(mutex_);
-    return changed_.wait_for(lock, std::chrono::seconds(60),
-                             [&] { return final_ && view_ == view; });
+    const bool came = changed_.wait_for(lock, std::chrono::seconds(60),
+                                        [&] { return last_.final && last_.view_sequence == view; });
+    return came ? image_ : "";
   }
   bool was_stale() {
     const std::lock_guard lock(mutex_);
@@ -46,37 +48,47 @@ class EagerOutlet : public Outlet {
   Studio& studio_;
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::uint32_t view_ = 0;
-  int frames_ = 0;
-  bool final_ = false, stale_ = false;
+  FrameHeader last_;
+  std::string image_;
+  bool stale_ = false;
 };
 
+constexpr const char* zeolite = MOTES_SOURCE_DIR "/data/demo/zeolite_mfi_3494.xyz";
+
+/// The file of the full picture, made without a studio.
+std::string picture_of(const Scene& scene, const Camera& camera, int width, int height) {
+  Warnings warnings;
+  const Document document = Document::open(zeolite, scene, nullptr, warnings);
+  Framebuffer image;
+  document.render(camera, width, height, {}, nullptr, image);
+  const RenderSettings& settings = document.scene().render;
+  return encode_png(to_display(image, settings.termination_opacity, settings.background));
+}
+
 TEST(Studio, KeepsUpWithTwoHoursOfEvents) {
-  const std::string data = MOTES_SOURCE_DIR "/data/demo/zeolite_mfi_3494.xyz";
-  Scene scene = open_scene(data);
+  Scene scene = open_scene(zeolite);
   Studio studio;
   const auto outlet = std::make_shared<EagerOutlet>(studio);
   studio.open({"zeolite", [scene] { return scene; }});
   studio.connect(1, outlet);
   studio.handle(1, SizeMessage{32, 32});
   constexpr std::uint32_t num_events = 2 * 3600 * 60;
+  Camera camera;
   for (std::uint32_t i = 1; i <= num_events; ++i) {
-    Camera camera;
     camera.eye = {20 + 0.001 * (i % 1000), 20, 120};
     camera.target = {20, 20, 20};
     studio.handle(1, ViewMessage{i, camera, i != num_events});
     if (i % 100 == 0) studio.handle(1, PickMessage{i, 16, 16});
     if (i % 1000 == 0) studio.handle(1, HistogramMessage{});
   }
-  EXPECT_TRUE(outlet->wait_for_final(num_events));
+  EXPECT_EQ(outlet->wait_for_final(num_events), picture_of(scene, camera, 32, 32));
   EXPECT_FALSE(outlet->was_stale());
 }
 
 TEST(Studio, StopsWhileItOpens) {
-  const std::string data = MOTES_SOURCE_DIR "/data/demo/zeolite_mfi_3494.xyz";
   for (int i = 0; i < 20; ++i) {
     Studio studio;
-    studio.open({"zeolite", [data] { return open_scene(data); }});
+    studio.open({"zeolite", [] { return open_scene(zeolite); }});
     studio.connect(1, std::make_shared<EagerOutlet>(studio));
     studio.handle(1, SizeMessage{64, 64});
     if (i % 2 == 0) studio.handle(1, CancelMessage{});

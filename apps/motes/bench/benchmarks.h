@@ -1,6 +1,7 @@
 // What `motes bench` can be asked for.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,7 @@ struct BenchOptions {
 struct BenchJob {
   const Workplace& workplace;
   std::vector<const BenchScene*> scenes;
+  std::vector<std::filesystem::path> files;  ///< further scenes, for `view` alone
   BenchOptions options;
 };
 
@@ -39,5 +41,6 @@ void run_fig6(const BenchJob& job);
 void run_fig7(const BenchJob& job);
 void run_fig8(const BenchJob& job);
 void run_fig9(const BenchJob& job);
+void run_view(const BenchJob& job);  ///< of the demo scenes, where none is named
 
 }  // namespace motes

@@ -4,11 +4,13 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 #include "core/error.h"
@@ -40,8 +42,10 @@ constexpr const char* examples =
   fig7      frames per second with rays that end early or late, and with passes of many samples
   fig8      pictures for several kernel scales (kappa), and their frames per second
   fig9      pictures for several support factors (sigma), and their frames per second
+  view      the viewer on this machine: from the mouse's move to the picture of it
 
-Scenes: zeolite, tryptophan, nanobowl, nanosphere_90k, nanosphere_740k, sio2, anp3, cosmology.
+Scenes: zeolite, tryptophan, nanobowl, nanosphere_90k, nanosphere_740k, sio2, anp3, cosmology;
+for view also files of scenes or particles.
 Results are printed, and written to out/bench as JSON and SVG. What is missing of the scenes is made
 first. docs/bench.md tells what each benchmark measures.
 
@@ -49,6 +53,7 @@ Examples:
   motes bench scenes sio2
   motes bench table1
   motes bench table2 --scenes zeolite,nanobowl
+  motes bench view sio2 scene.json --size 1920x1080
   MOTES_TARGET=AVX2 motes bench table2 --repeat 9 --output out/avx2)";
 
 struct Benchmark {
@@ -57,23 +62,26 @@ struct Benchmark {
   /// The scenes that it takes where none is named; none: all.
   std::array<std::string_view, 3> default_scenes = {};
   std::size_t most_scenes = std::numeric_limits<std::size_t>::max();
+  bool takes_files = false;  ///< as scenes too; where nothing is named it knows what to take
 };
-constexpr Benchmark benchmarks[] = {{"scenes", run_scenes},
-                                    {"table1", run_table1},
-                                    {"table2", run_table2},
-                                    {"build", run_build},
-                                    {"fields", run_fields, {"zeolite", "tryptophan", "anp3"}},
-                                    {"kernels", run_kernels, {"nanobowl", "nanosphere_90k"}},
-                                    {"limit", run_limit},
-                                    {"lattice", run_lattice, {}, 0},
-                                    {"quality", run_quality, {}, 0},
-                                    {"radii", run_radii, {}, 0},
-                                    {"threads", run_threads, {"nanosphere_90k"}},
-                                    {"spheres", run_spheres, {"sio2"}},
-                                    {"fig6", run_fig6, {"cosmology"}, 1},
-                                    {"fig7", run_fig7, {"cosmology"}, 1},
-                                    {"fig8", run_fig8, {"nanobowl"}},
-                                    {"fig9", run_fig9, {"nanobowl"}}};
+constexpr Benchmark benchmarks[] = {
+    {"scenes", run_scenes},
+    {"table1", run_table1},
+    {"table2", run_table2},
+    {"build", run_build},
+    {"fields", run_fields, {"zeolite", "tryptophan", "anp3"}},
+    {"kernels", run_kernels, {"nanobowl", "nanosphere_90k"}},
+    {"limit", run_limit},
+    {"lattice", run_lattice, {}, 0},
+    {"quality", run_quality, {}, 0},
+    {"radii", run_radii, {}, 0},
+    {"threads", run_threads, {"nanosphere_90k"}},
+    {"spheres", run_spheres, {"sio2"}},
+    {"fig6", run_fig6, {"cosmology"}, 1},
+    {"fig7", run_fig7, {"cosmology"}, 1},
+    {"fig8", run_fig8, {"nanobowl"}},
+    {"fig9", run_fig9, {"nanobowl"}},
+    {"view", run_view, {}, std::numeric_limits<std::size_t>::max(), true}};
 
 struct Options {
   std::string what, data = "data/bench", output = "out/bench";
@@ -105,6 +113,29 @@ const Benchmark& find_benchmark(const std::string& name) {
   throw unknown_name("benchmark", name, known);
 }
 
+bool is_file(const std::string& name) {
+  std::error_code none;
+  return std::filesystem::is_regular_file(name, none);
+}
+
+/// Takes those out of `names` that are no scene's of the catalogue but a file's.
+std::vector<std::filesystem::path> take_files(const Benchmark& benchmark,
+                                              std::vector<std::string>& names) {
+  std::vector<std::filesystem::path> files;
+  std::erase_if(names, [&](const std::string& name) {
+    const bool known =
+        std::ranges::find(bench_scenes(), name, &BenchScene::name) != bench_scenes().end();
+    if (known) return false;
+    files.emplace_back(name);
+    return true;
+  });
+  if (!files.empty() && !benchmark.takes_files) {
+    throw Error(fmt::format("{} takes scenes by their names; '{}' is a file", benchmark.name,
+                            files.front().string()));
+  }
+  return files;
+}
+
 /// The scenes that are named, or those that the benchmark takes by itself.
 std::vector<const BenchScene*> scenes_of(const Benchmark& benchmark,
                                          std::vector<std::string> names) {
@@ -118,7 +149,7 @@ std::vector<const BenchScene*> scenes_of(const Benchmark& benchmark,
       if (!name.empty()) names.emplace_back(name);
     }
   }
-  if (benchmark.most_scenes == 0) return {};
+  if (benchmark.most_scenes == 0 || (names.empty() && benchmark.takes_files)) return {};
   return find_bench_scenes(names);
 }
 
@@ -131,7 +162,9 @@ void run(const Options& options) {
   Scene scene;
   options.size.apply(scene);
   const Benchmark& benchmark = find_benchmark(options.what);
-  BenchJob job{workplace, scenes_of(benchmark, options.scenes), options.bench};
+  std::vector<std::string> names = options.scenes;
+  const std::vector<std::filesystem::path> files = take_files(benchmark, names);
+  BenchJob job{workplace, scenes_of(benchmark, names), files, options.bench};
   job.options.width = scene.render.width;
   job.options.height = scene.render.height;
   benchmark.run(job);
@@ -147,8 +180,9 @@ void add_bench_command(CLI::App& program) {
       ->required()
       ->type_name("")
       ->check(validator(find_benchmark));
-  const CLI::Validator scene_name =
-      validator([](const std::string& name) { find_bench_scenes({name}); });
+  const CLI::Validator scene_name = validator([](const std::string& name) {
+    if (!is_file(name)) find_bench_scenes({name});
+  });
   CLI::Option* names = command
                            ->add_option("SCENE", options->scenes,
                                         "which scenes (default: all, or\nwhat docs/bench.md says)")

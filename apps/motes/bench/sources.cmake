@@ -6,6 +6,7 @@ target_sources(motes PRIVATE
   motes/bench/command.cc
   motes/bench/cut_out.cc
   motes/bench/grids.cc
+  motes/bench/hand.cc
   motes/bench/measure.cc
   motes/bench/particle_file.cc
   motes/bench/peak.cc
@@ -30,6 +31,7 @@ target_sources(motes PRIVATE
   motes/bench/run_table1.cc
   motes/bench/run_table2.cc
   motes/bench/run_threads.cc
+  motes/bench/run_view.cc
   motes/bench/workplace.cc)
 motes_simd_sources(motes/bench/peak_kernels.cc)
 

@@ -9,6 +9,7 @@
 #include <jpeglib.h>
 
 #include "core/error.h"
+#include "image/decode_jpeg.h"
 #include "image/encode.h"
 
 namespace motes {
@@ -60,6 +61,39 @@ bool compress(const DisplayImage& image, int quality, JpegErrors& errors, unsign
   return true;
 }
 
+struct Decompress {
+  explicit Decompress(JpegErrors& errors) {
+    info.err = jpeg_std_error(&errors.manager);
+    errors.manager.error_exit = jump_back;
+    jpeg_create_decompress(&info);
+  }
+  ~Decompress() { jpeg_destroy_decompress(&info); }
+  Decompress(const Decompress&) = delete;
+  Decompress& operator=(const Decompress&) = delete;
+
+  jpeg_decompress_struct info;
+};
+
+/// Decodes into `image`; as compress().
+bool decompress(std::string_view bytes, JpegErrors& errors, jpeg_decompress_struct& info,
+                DisplayImage& image) {
+  if (setjmp(errors.jump) != 0) return false;
+  jpeg_mem_src(&info, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
+  jpeg_read_header(&info, TRUE);
+  info.out_color_space = JCS_RGB;
+  jpeg_start_decompress(&info);
+  image.width = static_cast<int>(info.output_width);
+  image.height = static_cast<int>(info.output_height);
+  image.rgb.resize(std::size_t{3} * info.output_width * info.output_height);
+  while (info.output_scanline < info.output_height) {
+    const std::size_t row = std::size_t{3} * info.output_width * info.output_scanline;
+    JSAMPROW rows[] = {image.rgb.data() + row};
+    jpeg_read_scanlines(&info, rows, 1);
+  }
+  jpeg_finish_decompress(&info);
+  return true;
+}
+
 }  // namespace
 
 std::string encode_jpeg(const DisplayImage& image, int quality) {
@@ -70,6 +104,16 @@ std::string encode_jpeg(const DisplayImage& image, int quality) {
   const std::unique_ptr<unsigned char, decltype(&std::free)> owner(bytes, &std::free);
   if (!ok) throw Error(fmt::format("cannot encode as JPEG: {}", errors.message));
   return {reinterpret_cast<const char*>(bytes), size};
+}
+
+DisplayImage decode_jpeg(std::string_view bytes) {
+  JpegErrors errors;
+  Decompress decoder(errors);
+  DisplayImage image;
+  if (!decompress(bytes, errors, decoder.info, image)) {
+    throw Error(fmt::format("cannot decode as JPEG: {}", errors.message));
+  }
+  return image;
 }
 
 }  // namespace motes
