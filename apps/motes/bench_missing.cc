@@ -10,8 +10,9 @@ void add_bench_command(CLI::App& program) {
   CLI::App* command = program.add_subcommand("bench", "Measure speed (left out of this build).");
   command->allow_extras();
   command->callback([] {
-    throw Error("motes bench: left out of this build, expected one with the CMake option "
-                "MOTES_BENCH=ON");
+    throw Error(
+        "motes bench: left out of this build, expected one with the CMake option "
+        "MOTES_BENCH=ON");
   });
 }
 

@@ -44,8 +44,9 @@ std::vector<Color> colors_of(const Isosurface& isosurface, const ParticleSet& pa
 
 std::vector<VisibleSphere> spheres_of_view(const ParticleSet& particles,
                                            const std::vector<FieldSource>& sources,
-                                           const GeometrySource& geometry) {
-  std::vector<VisibleSphere> spheres = visible_spheres(particles, sources, geometry);
+                                           const GeometrySource& geometry,
+                                           const std::vector<Field>& fields) {
+  std::vector<VisibleSphere> spheres = visible_spheres(particles, sources, geometry, fields);
   if (!spheres.empty()) return spheres;
   Bounds3d box = particles.bounds();
   if (box.empty()) box = {{-1, -1, -1}, {1, 1, 1}};
@@ -59,7 +60,8 @@ ResolvedScene resolve(const Scene& scene, const ParticleSet& particles,
   ResolvedScene resolved;
   resolved.render = scene.render;
   const double aspect = static_cast<double>(scene.render.width) / scene.render.height;
-  resolved.camera = fit_camera(scene, spheres_of_view(particles, sources, geometry), aspect);
+  resolved.camera =
+      fit_camera(scene, spheres_of_view(particles, sources, geometry, fields), aspect);
   // Without fields nothing is sampled.
   resolved.step_size = 1;
   if (scene.render.step_size) {

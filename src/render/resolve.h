@@ -15,7 +15,8 @@ namespace motes {
 /// ends of the particles' box.
 std::vector<VisibleSphere> spheres_of_view(const ParticleSet& particles,
                                            const std::vector<FieldSource>& sources,
-                                           const GeometrySource& geometry);
+                                           const GeometrySource& geometry,
+                                           const std::vector<Field>& fields);
 
 /// Fills in what `scene` leaves open: camera from the fields and `geometry`, step size from the
 /// fields, transfer functions from what the view shows of them. `fields` are those that the scene

@@ -20,10 +20,13 @@ struct VisibleSphere {
 /// is easily seen; those that are far larger than is typical (in the voids of a cosmological box)
 /// are taken for smaller.
 /// With them the balls of `geometry`, whole, the ends of sticks that leave a periodic cell, and the
-/// corners of grids as spheres of radius 0.
+/// corners of what grids have to be seen, as spheres of radius 0: magnitudes of a tenth of the
+/// level that encloses most of a field (enclosing_level()), or of its isosurfaces in `fields`,
+/// which are those of the sources.
 std::vector<VisibleSphere> visible_spheres(const ParticleSet& particles,
-                                           const std::vector<FieldSource>& fields,
-                                           const GeometrySource& geometry = {});
+                                           const std::vector<FieldSource>& sources,
+                                           const GeometrySource& geometry = {},
+                                           const std::vector<Field>& fields = {});
 
 /// The scene's camera; what it leaves open is fitted so that the spheres just fill an image of
 /// `aspect` = width / height. The view is oblique, mostly along their box's thinnest axis, so that

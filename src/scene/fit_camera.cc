@@ -1,10 +1,14 @@
 // A camera that shows all of the data from a pleasing side.
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
 #include <numbers>
 #include <random>
 
 #include "particles/minimum_image.h"
 #include "scene/fit.h"
+#include "scene/fit_levels.h"
 
 namespace motes {
 namespace {
@@ -18,6 +22,7 @@ constexpr double in_front = 0.05;         // of the diagonal, from the eye to th
 constexpr double easily_seen = 1.75;      // standard deviations: there a Gaussian is at a fifth
 constexpr double large = 2.5;             // times the middle radius
 constexpr std::size_t particles_looked_at = 1 << 18;  // of one field
+constexpr std::size_t samples_looked_at = 1 << 20;    // of one grid
 
 // Strays: one particle in so many at most, farther out than this times the extent of the others.
 constexpr std::size_t stray_share = 1000;
@@ -91,12 +96,62 @@ Bounds3d box_of(const std::vector<VisibleSphere>& spheres) {
   return {corner[0], corner[1]};
 }
 
+/// Corners of the part of a grid in which there is something to be seen: magnitudes of a tenth of
+/// the level that encloses most of the field, or of an isosurface at `least_level`. Large grids are
+/// looked at here and there.
+std::array<Point3d, 8> visible_corners(const Grid& grid, double least_level) {
+  if (grid.periodic) return corners_of(grid);
+  const double excess = static_cast<double>(grid.size()) / samples_looked_at;
+  const auto stride = static_cast<std::size_t>(std::max(1.0, std::ceil(std::cbrt(excess))));
+  std::vector<float> values;
+  const auto for_samples = [&](auto&& use) {
+    for (std::size_t k = 0; k < grid.dims[2]; k += stride) {
+      for (std::size_t j = 0; j < grid.dims[1]; j += stride) {
+        for (std::size_t i = 0; i < grid.dims[0]; i += stride) {
+          use(grid.values[grid.index(i, j, k)], std::array{i, j, k});
+        }
+      }
+    }
+  };
+  for_samples([&](float value, const auto& /*index*/) { values.push_back(value); });
+  const double level = enclosing_level(values, signs_of(values));
+  const double least = std::min(0.1 * level, least_level);
+  std::array<std::size_t, 3> first = grid.dims, last{};
+  for_samples([&](float value, const std::array<std::size_t, 3>& index) {
+    if (!(std::abs(static_cast<double>(value)) >= least)) return;
+    for (std::size_t a = 0; a < 3; ++a) {
+      first[a] = std::min(first[a], index[a] - std::min(index[a], stride));
+      last[a] = std::max(last[a], std::min(index[a] + stride, grid.dims[a] - 1));
+    }
+  });
+  if (first[0] == grid.dims[0]) return corners_of(grid);
+  std::array<Point3d, 8> corners;
+  for (std::size_t c = 0; c < 8; ++c) {
+    const auto end = [&](std::size_t a) {
+      return static_cast<double>((c >> a & 1) != 0 ? last[a] : first[a]);
+    };
+    corners[c] = grid.position(end(0), end(1), end(2));
+  }
+  return corners;
+}
+
+/// The least magnitude of the isosurfaces of field f; infinity if it has none.
+double least_level_of(const std::vector<Field>& fields, std::size_t f) {
+  double least = std::numeric_limits<double>::infinity();
+  if (f >= fields.size()) return least;
+  for (const Isosurface& isosurface : fields[f].isosurfaces) {
+    least = std::min(least, std::abs(isosurface.value));
+  }
+  return least;
+}
+
 /// Adds the corners of all grids, so often that they are no strays.
-void add_corners(const std::vector<FieldSource>& fields, std::vector<VisibleSphere>& spheres) {
+void add_corners(const std::vector<FieldSource>& sources, const std::vector<Field>& fields,
+                 std::vector<VisibleSphere>& spheres) {
   const std::size_t times = 1 + spheres.size() / stray_share;
-  for (const FieldSource& field : fields) {
-    if (!field.grid) continue;
-    const std::array<Point3d, 8> corners = corners_of(*field.grid);
+  for (std::size_t f = 0; f < sources.size(); ++f) {
+    if (!sources[f].grid) continue;
+    const auto corners = visible_corners(*sources[f].grid, least_level_of(fields, f));
     for (std::size_t n = 0; n < times; ++n) {
       for (const Point3d& corner : corners) spheres.push_back({corner, 0});
     }
@@ -191,20 +246,21 @@ void add_geometry(const ParticleSet& particles, const GeometrySource& geometry,
 }  // namespace
 
 std::vector<VisibleSphere> visible_spheres(const ParticleSet& particles,
-                                           const std::vector<FieldSource>& fields,
-                                           const GeometrySource& geometry) {
+                                           const std::vector<FieldSource>& sources,
+                                           const GeometrySource& geometry,
+                                           const std::vector<Field>& fields) {
   std::vector<VisibleSphere> spheres;
   std::mt19937 random(1);
-  for (const FieldSource& field : fields) {
-    const double widths = field.kernel.support() / field.kernel.standard_deviation();
+  for (const FieldSource& source : sources) {
+    const double widths = source.kernel.support() / source.kernel.standard_deviation();
     const double extent = std::min(widths, easily_seen);
-    for_some(field.index.size(), random, [&](std::size_t i) {
-      spheres.push_back({particles.position(field.index[i]), extent * field.width_of(i)});
+    for_some(source.index.size(), random, [&](std::size_t i) {
+      spheres.push_back({particles.position(source.index[i]), extent * source.width_of(i)});
     });
   }
   limit_radii(spheres);
   add_geometry(particles, geometry, random, spheres);
-  add_corners(fields, spheres);
+  add_corners(sources, fields, spheres);
   // Nothing is drawn: the place where something could be.
   if (const Bounds3d box = particles.bounds(); spheres.empty() && !box.empty()) {
     spheres = {{box.min, 0}, {box.max, 0}};

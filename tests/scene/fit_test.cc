@@ -485,5 +485,51 @@ TEST(FitTransferFunction, AnswersViewsOfNothingAndOfOneValue) {
   EXPECT_NEAR(mean_opacity(fit_transfer_function({}, {}, slab, 0.7), slab), 0.7, 0.01);
 }
 
+/// A bell of height 1 and width 1 around (2, 3, 4), on 0 to 20 by half a length.
+FieldSource bell() {
+  Grid grid;
+  grid.dims = {41, 41, 41};
+  grid.steps = {Vector3d{0.5, 0, 0}, {0, 0.5, 0}, {0, 0, 0.5}};
+  grid.values.resize(grid.size());
+  for (std::size_t n = 0; n < grid.size(); ++n) {
+    const Point3d p = grid.position(static_cast<double>(n % 41), static_cast<double>(n / 41 % 41),
+                                    static_cast<double>(n / 41 / 41));
+    const Vector3d off = p - Point3d{2, 3, 4};
+    grid.values[n] = static_cast<float>(std::exp(-0.5 * dot(off, off)));
+  }
+  FieldSource source;
+  source.grid = std::make_shared<const Grid>(std::move(grid));
+  return source;
+}
+
+double farthest_x(const std::vector<VisibleSphere>& spheres) {
+  double x = -1;
+  for (const VisibleSphere& sphere : spheres) x = std::max(x, sphere.center.x);
+  return x;
+}
+
+TEST(VisibleSpheres, HoldWhatAGridShows) {
+  const FieldSource source = bell();
+  const auto spheres = visible_spheres({}, {source});
+  ASSERT_EQ(spheres.size(), 8U);
+  // 85 % of a bell lie within 2.3 widths, where it is 0.07; it comes to a tenth at 3.15 of them.
+  EXPECT_NEAR(farthest_x(spheres), 2 + 3.15 + 0.5, 0.5);
+  for (const VisibleSphere& sphere : spheres) EXPECT_GE(sphere.center.x, 0);
+  Field low;
+  low.isosurfaces.push_back({1e-6, {}, 1});  // 5.26 widths
+  EXPECT_NEAR(farthest_x(visible_spheres({}, {source}, {}, {low})), 2 + 5.26 + 0.5, 0.5);
+}
+
+TEST(VisibleSpheres, HoldAllOfAGridThatGoesOn) {
+  FieldSource source = bell();
+  Grid grid;
+  grid.dims = source.grid->dims;
+  grid.steps = source.grid->steps;
+  grid.values = source.grid->values;
+  grid.periodic = true;
+  source.grid = std::make_shared<const Grid>(std::move(grid));
+  EXPECT_EQ(farthest_x(visible_spheres({}, {source})), 20.5);
+}
+
 }  // namespace
 }  // namespace motes
