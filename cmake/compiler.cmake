@@ -22,6 +22,11 @@ if(MOTES_SANITIZE MATCHES "undefined")
   # third of the compiler's time, and two thirds where vectors are loaded.
   add_compile_options(-fno-sanitize=null,alignment,object-size,pointer-overflow)
 endif()
+if(MOTES_SANITIZE MATCHES "address" AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # Checks of addresses as calls, not spelled out at each use: a seventh less to compile, a third to two thirds where
+  # vectors are loaded.
+  add_compile_options(--param=asan-instrumentation-with-call-threshold=0)
+endif()
 if(MOTES_SANITIZE STREQUAL "thread")
   # Programs (not libraries) take what shows oneTBB's synchronisation to the sanitizer.
   add_library(motes_tsan_tbb OBJECT ${PROJECT_SOURCE_DIR}/tests/support/tsan_tbb.cc)

@@ -19,8 +19,4 @@ function(motes_simd_sources)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     set_property(SOURCE ${ARGN} APPEND PROPERTY COMPILE_OPTIONS -Wno-maybe-uninitialized)
   endif()
-  # Checks of addresses as calls, not spelled out at each load: a third to two thirds less to compile.
-  if(MOTES_SANITIZE MATCHES "address" AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-    set_property(SOURCE ${ARGN} APPEND PROPERTY COMPILE_OPTIONS --param=asan-instrumentation-with-call-threshold=0)
-  endif()
 endfunction()

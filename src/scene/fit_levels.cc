@@ -21,7 +21,7 @@ constexpr int dropped_bits = 15;
 constexpr std::size_t num_bins = std::size_t{1} << (31 - dropped_bits);
 
 std::size_t bin_of(float magnitude) {
-  return std::bit_cast<std::uint32_t>(magnitude) >> dropped_bits;
+  return std::bit_cast<std::uint32_t>(std::abs(magnitude)) >> dropped_bits;  // (of -0 too)
 }
 double begin_of(std::size_t bin) {
   return std::bit_cast<float>(static_cast<std::uint32_t>(bin) << dropped_bits);
