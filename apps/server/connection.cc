@@ -155,7 +155,7 @@ asio::awaitable<Answer> answer_to(const Target& target,
     co_return text_answer(http::status::method_not_allowed, "expected GET");
   }
   if (target.path == "/") co_return page_answer();
-  if (target.path == "/picture") co_return co_await make_picture(target, site);
+  if (target.path == "/picture") co_return co_await make_picture(target, stream.socket(), site);
   co_return text_answer(http::status::not_found, "there is no such page");
 }
 

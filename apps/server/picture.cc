@@ -19,7 +19,7 @@ class Awaited {
   explicit Awaited(const asio::any_io_executor& executor)
       : timer_(executor, asio::steady_timer::time_point::max()) {}
 
-  /// From any thread, once.
+  /// From any thread; the first counts.
   static void give(const std::shared_ptr<Awaited>& awaited, Answer answer) {
     asio::post(awaited->timer_.get_executor(), [awaited, answer = std::move(answer)]() mutable {
       awaited->answer_ = std::move(answer);
@@ -38,6 +38,35 @@ class Awaited {
   std::optional<Answer> answer_;
 };
 
+/// Looks, while it lives, whether the client goes away: its side of the connection ends.
+class Departure {
+ public:
+  template <class F>
+  Departure(asio::ip::tcp::socket& socket, F on_departure) : socket_(socket) {
+    socket.async_wait(
+        asio::ip::tcp::socket::wait_read,
+        [&socket, looks = looks_, on_departure](const boost::system::error_code& error) {
+          if (error || !*looks) return;
+          char next = 0;
+          boost::system::error_code failed;
+          const std::size_t size =
+              socket.receive(asio::buffer(&next, 1), asio::ip::tcp::socket::message_peek, failed);
+          if (failed || size == 0) on_departure();
+        });
+  }
+  ~Departure() {
+    *looks_ = false;
+    boost::system::error_code ignored;
+    socket_.cancel(ignored);
+  }
+  Departure(const Departure&) = delete;
+  Departure& operator=(const Departure&) = delete;
+
+ private:
+  asio::ip::tcp::socket& socket_;
+  std::shared_ptr<bool> looks_ = std::make_shared<bool>(true);  ///< it still lives
+};
+
 const char* mime_type(ImageFormat format) {
   switch (format) {
     case ImageFormat::png:
@@ -51,7 +80,8 @@ const char* mime_type(ImageFormat format) {
 
 }  // namespace
 
-asio::awaitable<Answer> make_picture(const Target& target, Site& site) {
+asio::awaitable<Answer> make_picture(const Target& target, asio::ip::tcp::socket& socket,
+                                     Site& site) {
   const auto client = parse_number(target.parameter("client"), 1, 1 << 30);
   const auto width = parse_number(target.parameter("width"), 1, max_picture_side);
   const auto height = parse_number(target.parameter("height"), 1, max_picture_side);
@@ -76,6 +106,10 @@ asio::awaitable<Answer> make_picture(const Target& target, Site& site) {
     answer.headers.emplace_back("Content-Disposition",
                                 fmt::format("attachment; filename=\"{}\"", name));
     Awaited::give(awaited, std::move(answer));
+  });
+  const Departure departure(socket, [&studio = site.studio, request, awaited] {
+    studio.abandon(request);
+    Awaited::give(awaited, {});
   });
   co_return co_await awaited->wait();
 }

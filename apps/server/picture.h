@@ -7,6 +7,8 @@
 
 namespace motes::server {
 
-asio::awaitable<Answer> make_picture(const Target& target, Site& site);
+/// Gives up where the client on `socket` goes away.
+asio::awaitable<Answer> make_picture(const Target& target, asio::ip::tcp::socket& socket,
+                                     Site& site);
 
 }  // namespace motes::server

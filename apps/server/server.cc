@@ -6,6 +6,7 @@
 #include <chrono>
 
 #include "core/error.h"
+#include "io/companion.h"
 #include "server/connection.h"
 #include "server/files.h"
 #include "server/studio.h"
@@ -84,7 +85,10 @@ asio::awaitable<void> Server::State::end() {
 }
 
 Server::Server(const ServerOptions& options, Studio& studio, Files& files)
-    : state_(std::make_unique<State>(options, studio, files)) {}
+    : state_(std::make_unique<State>(options, studio, files)) {
+  // Whoever opens a file sees what it says, not what it points to.
+  keep_to_own_directories();
+}
 
 Server::~Server() = default;
 

@@ -212,6 +212,8 @@ void Studio::send_warnings(const Warnings& warnings) {
 
 bool Studio::save_picture(const PictureRequest& request, const PictureAnswer& answer,
                           const std::atomic<bool>* cancel) {
+  if (*request.abandoned) return true;
+  if (cancel == nullptr) cancel = request.abandoned.get();
   const auto viewer = viewers_.find(request.client);
   if (!document_ || viewer == viewers_.end()) {
     answer({}, "there is nothing to be seen");
@@ -224,7 +226,7 @@ bool Studio::save_picture(const PictureRequest& request, const PictureAnswer& an
     answer(encode_image(request.format, image, settings.termination_opacity, settings.background),
            "");
   } catch (const Cancelled&) {
-    return false;
+    return *request.abandoned;
   } catch (const std::exception& error) {  // Error, or not enough memory
     answer({}, error.what());
   }

@@ -39,6 +39,8 @@ struct PictureRequest {
   ClientId client = 0;  ///< whose view
   int width = 0, height = 0;
   ImageFormat format = ImageFormat::png;
+  /// Becomes true when nobody waits for it any more: Studio::abandon().
+  std::shared_ptr<std::atomic<bool>> abandoned = std::make_shared<std::atomic<bool>>(false);
 };
 
 /// The picture's file, or nullopt and why there is none. Called on the studio's thread.
@@ -66,6 +68,8 @@ class Studio {
   /// Opens something; what there is stays until it is ready.
   void open(Opening opening);
   void picture(const PictureRequest& request, PictureAnswer answer);
+  /// There may be no answer then.
+  void abandon(const PictureRequest& request);
 
  private:
   using Clock = Viewer::Clock;

@@ -147,4 +147,9 @@ void Studio::picture(const PictureRequest& request, PictureAnswer answer) {
       false);
 }
 
+void Studio::abandon(const PictureRequest& request) {
+  *request.abandoned = true;
+  post([] {}, true);
+}
+
 }  // namespace motes::server

@@ -12,6 +12,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "io/companion.h"
 #include "io/hdf5_columns.h"
 #include "io/length_unit.h"
 #include "particles/smoothing.h"
@@ -86,7 +87,7 @@ std::vector<Hdf5File> open_parts(Hdf5File file, const ReadOptions& options) {
   }
   for (int part = 0; part < static_cast<int>(num_files); ++part) {
     const std::filesystem::path part_path =
-        path.parent_path() / (name->before + std::to_string(part) + name->after);
+        companion_of(path, name->before + std::to_string(part) + name->after);
     if (!std::filesystem::exists(part_path)) {
       throw Error(part_path,
                   fmt::format("is missing; expected all {} files of the snapshot", num_files));

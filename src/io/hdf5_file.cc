@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "io/bytes.h"
+#include "io/companion.h"
 
 namespace motes {
 
@@ -159,6 +160,10 @@ std::vector<std::string> Hdf5File::members(const std::string& group) const {
 Hdf5Handle Hdf5File::open_dataset(const std::string& name) const {
   Hdf5Handle dataset(H5Dopen2(file_.id(), name.c_str(), H5P_DEFAULT), H5Dclose);
   if (!dataset.valid()) fail(name, damaged);
+  const Hdf5Handle creation(H5Dget_create_plist(dataset.id()), H5Pclose);
+  if (keeps_to_own_directories() && H5Pget_external_count(creation.id()) != 0) {
+    fail(name, "has its values in other files, which are not opened from here");
+  }
   return dataset;
 }
 

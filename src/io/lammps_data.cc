@@ -324,7 +324,7 @@ class DataReader {
     for (std::size_t row = 0; row < n; ++row) {
       const auto a = find_atom(index, columns[2].integers[row], bonds_->first_line);
       const auto b = find_atom(index, columns[3].integers[row], bonds_->first_line);
-      if (a != b) particles_.bonds.push_back({std::min(a, b), std::max(a, b)});
+      particles_.bonds.push_back({std::min(a, b), std::max(a, b)});
     }
   }
 

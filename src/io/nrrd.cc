@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "io/bytes.h"
+#include "io/companion.h"
 #include "io/grid_format.h"
 #include "io/nrrd_header.h"
 #include "io/number_text.h"
@@ -110,7 +111,7 @@ std::vector<Grid> read_nrrd(const std::filesystem::path& path, const ReadOptions
 
   // The values are named relative to the header.
   const bool detached = !header.data_file.empty();
-  const std::filesystem::path file = detached ? path.parent_path() / header.data_file : path;
+  const std::filesystem::path file = detached ? companion_of(path, header.data_file) : path;
   std::optional<FileContent> data;
   std::optional<MappedFile> compressed_data;
   std::string_view stored = content.bytes().substr(header.end);

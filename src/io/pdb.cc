@@ -223,7 +223,7 @@ void Pdb::add_bonds(const std::vector<Connection>& connections, ParticleSet& par
   std::size_t num_unknown = 0;
   for (const auto& [from, to] : connections) {
     const auto first = indices.find(from), second = indices.find(to);
-    if (first == indices.end() || second == indices.end() || from == to) {
+    if (first == indices.end() || second == indices.end()) {
       ++num_unknown;
       continue;
     }
@@ -231,8 +231,8 @@ void Pdb::add_bonds(const std::vector<Connection>& connections, ParticleSet& par
         {std::min(first->second, second->second), std::max(first->second, second->second)});
   }
   if (num_unknown > 0) {
-    warn(fmt::format("{}: {} bonds to atoms that are not there are left out",
-                     printable(path().string()), num_unknown));
+    warn(fmt::format("{}: {} to atoms that are not there left out", printable(path().string()),
+                     num_unknown == 1 ? "1 bond" : fmt::format("{} bonds", num_unknown)));
   }
   // Most bonds are listed from both their ends.
   const auto order = [](const Bond& a, const Bond& b) {

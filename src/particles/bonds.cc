@@ -363,7 +363,8 @@ std::vector<Bond> file_bonds(const ParticleSet& particles, Warnings& warnings) {
     if (first != second) bonds.push_back({first, second});
   }
   if (const std::size_t lone = particles.bonds.size() - bonds.size(); lone > 0) {
-    warnings.add(fmt::format("{} bonds of a particle to itself are left out", lone));
+    warnings.add(fmt::format("{} of a particle to itself left out",
+                             lone == 1 ? "1 bond" : fmt::format("{} bonds", lone)));
   }
   sort_bonds(bonds);
   bonds.erase(std::unique(bonds.begin(), bonds.end()), bonds.end());

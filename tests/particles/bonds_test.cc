@@ -257,7 +257,7 @@ TEST(FileBonds, AreSortedOnceEachAndNeverOfAParticleToItself) {
   particles.bonds = {{1, 2}, {0, 0}, {0, 1}, {2, 1}, {2, 2}};
   Warnings warnings;
   EXPECT_THAT(file_bonds(particles, warnings), ElementsAre(Bond{0, 1}, Bond{1, 2}));
-  EXPECT_THAT(warnings.lines(), ElementsAre("2 bonds of a particle to itself are left out"));
+  EXPECT_THAT(warnings.lines(), ElementsAre("2 bonds of a particle to itself left out"));
   particles.bonds.clear();
   EXPECT_THAT(file_bonds(particles, warnings), IsEmpty());
   EXPECT_EQ(warnings.lines().size(), 1U);

@@ -3,12 +3,17 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <hdf5.h>
 
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <string>
 
 #include "core/error.h"
+#include "io/companion.h"
+#include "io/grid_reader.h"
+#include "io/hdf5_file.h"
 
 namespace motes::server {
 namespace {
@@ -111,6 +116,60 @@ TEST_F(FilesTest, ThatTheUserHasOpenedAreTaken) {
   files.allow(scene);
   EXPECT_EQ(files.resolve(secret()), secret());
   EXPECT_THROW(files.resolve((root_ / "shared2/other.xyz").string()), Error);
+}
+
+void write_hdf5(const fs::path& path, const std::function<void(hid_t)>& fill) {
+  const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  fill(file);
+  H5Fclose(file);
+}
+
+hid_t one_number(hid_t file, const char* name, hid_t creation) {
+  const hsize_t size = 1;
+  const hid_t space = H5Screate_simple(1, &size, nullptr);
+  const hid_t set =
+      H5Dcreate2(file, name, H5T_IEEE_F64LE, space, H5P_DEFAULT, creation, H5P_DEFAULT);
+  H5Sclose(space);
+  return H5Dclose(set);
+}
+
+// What a file holds is shown to whoever opens it; what it points to is not.
+TEST_F(FilesTest, ThatReferToOthersElsewhereAreRefused) {
+  const fs::path shared = root_ / "shared", values = root_ / "values.raw";
+  std::ofstream(values) << std::string(8, 'x');
+  fs::copy_file(values, shared / "beside.raw");
+  fs::create_symlink(values, shared / "link.raw");
+  write_hdf5(root_ / "other.h5", [](hid_t file) { one_number(file, "d", H5P_DEFAULT); });
+  write_hdf5(shared / "linked.h5", [&](hid_t file) {
+    H5Lcreate_external((root_ / "other.h5").c_str(), "d", file, "d", H5P_DEFAULT, H5P_DEFAULT);
+    const hid_t creation = H5Pcreate(H5P_DATASET_CREATE);
+    H5Pset_external(creation, values.c_str(), 0, 8);
+    one_number(file, "e", creation);
+    H5Pclose(creation);
+  });
+  if (!keeps_to_own_directories()) {
+    EXPECT_TRUE(Hdf5File(shared / "linked.h5", {}).has_dataset("d"));
+  }
+  keep_to_own_directories();
+  const auto header = [&](const std::string& name, const std::string& data) {
+    std::ofstream(shared / name) << "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 2 2\n"
+                                    "encoding: raw\ndata file: "
+                                 << data << "\n\n";
+    return shared / name;
+  };
+  EXPECT_NO_THROW(read_grids(header("good.nhdr", "beside.raw"), {}));
+  for (const std::string& data : {values.string(), std::string("../values.raw"),
+                                  std::string("link.raw"), std::string("/etc/passwd")}) {
+    try {
+      read_grids(header("bad.nhdr", data), {});
+      FAIL() << data;
+    } catch (const Error& error) {
+      EXPECT_THAT(error.what(), HasSubstr("expected a file beside it")) << data;
+    }
+  }
+  const Hdf5File linked(shared / "linked.h5", {});
+  EXPECT_FALSE(linked.has_dataset("d"));
+  EXPECT_THROW(linked.shape("e"), Error);
 }
 
 TEST_F(FilesTest, ThatAreSentHaveAPlaceUntilTheEnd) {

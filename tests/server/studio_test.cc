@@ -3,10 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
+#include <future>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 
 #include "document/document.h"
@@ -83,6 +86,33 @@ TEST(Studio, KeepsUpWithTwoHoursOfEvents) {
   }
   EXPECT_EQ(outlet->wait_for_final(num_events), picture_of(scene, camera, 32, 32));
   EXPECT_FALSE(outlet->was_stale());
+}
+
+TEST(Studio, GivesUpPicturesThatNobodyWaitsFor) {
+  Scene scene = open_scene(zeolite);
+  Studio studio;
+  const auto outlet = std::make_shared<EagerOutlet>(studio);
+  studio.open({"zeolite", [scene] { return scene; }});
+  studio.connect(1, outlet);
+  studio.handle(1, SizeMessage{16, 16});
+  Camera camera;
+  camera.eye = {20, 20, 120};
+  camera.target = {20, 20, 20};
+  studio.handle(1, ViewMessage{1, camera, false});
+  ASSERT_NE(outlet->wait_for_final(1), "");
+  std::atomic<int> abandoned = 0;
+  for (const bool before : {true, false}) {
+    const PictureRequest huge{1, 16384, 16384};
+    if (before) studio.abandon(huge);
+    studio.picture(huge, [&](const auto&, const auto&) { ++abandoned; });
+    if (!before) studio.abandon(huge);
+    std::promise<bool> made;
+    studio.picture({1, 16, 16}, [&](const std::optional<std::string>& file, const std::string&) {
+      made.set_value(file.has_value());
+    });
+    EXPECT_TRUE(made.get_future().get());
+  }
+  EXPECT_EQ(abandoned, 0);
 }
 
 TEST(Studio, StopsWhileItOpens) {

@@ -29,6 +29,8 @@ struct PaperFigures {
   std::optional<FarClose> mic;  ///< its Xeon Phi SE10P
   // The same of structured volumes, one voxel an angstrom.
   std::optional<FarClose> structured_cpu = std::nullopt, structured_mic = std::nullopt;
+  // Nanovol's, on a GPU.
+  std::optional<FarClose> nanovol = std::nullopt, structured_nanovol = std::nullopt;
 };
 
 struct BenchScene {

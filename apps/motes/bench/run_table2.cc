@@ -110,13 +110,13 @@ std::string or_dash(const std::optional<double>& value) {
 void print_header() {
   constexpr const char* format =
       "{:<16}{:<6}{:>10}{:>8}{:>8}  |{:>8}{:>10}{:>8}{:>8}{:>8}{:>7}{:>8}{:>8}  |{:>8}{:>10}{:>8}"
-      "{:>7}{:>7}  |{:>7}{:>7}{:>7}\n";
+      "{:>7}{:>7}  |{:>7}{:>7}{:>8}{:>7}\n";
   fmt::print(format, "", "", "", "mean", "samples", "lit,", "frames a", "second", "", "sweep/",
              "at", "coher./", "coher./", "unlit,", "the same", "sweep/", "at", "lit/", "paper:", "",
-             "sweep/");
+             "", "sweep/");
   fmt::print(format, "scene", "view", "particles", "opacity", "a ray", "sweep", "coherent",
              "direct", "cells", "coher.", "most", "direct", "cells", "sweep", "coherent", "coher.",
-             "most", "unlit", "MIC", "CPU", "CPU");
+             "most", "unlit", "MIC", "CPU", "Nanovol", "CPU");
 }
 
 void print(const Row& row) {
@@ -137,19 +137,20 @@ void print(const Row& row) {
       row.scene->name, row.view(), row.scene->particles, row.lit.sweep.opacity,
       row.lit.sweep.samples_per_ray, row.lit.sweep.fps(), row.lit.coherent.fps(), or_dash(direct),
       or_dash(cells), row.lit.ratio(), row.lit.bound(), or_dash(over_direct), or_dash(over_cells));
-  fmt::print("{:>8.2f}{:>10.2f}{:>8.2f}{:>7.1f}{:>7.2f}  |{:>7}{:>7}{:>7}\n", row.unlit.sweep.fps(),
-             row.unlit.coherent.fps(), row.unlit.ratio(), row.unlit.bound(), row.lit_over_unlit(),
-             or_dash(mic), or_dash(cpu), or_dash(over_paper));
+  fmt::print("{:>8.2f}{:>10.2f}{:>8.2f}{:>7.1f}{:>7.2f}  |{:>7}{:>7}{:>8}{:>7}\n",
+             row.unlit.sweep.fps(), row.unlit.coherent.fps(), row.unlit.ratio(), row.unlit.bound(),
+             row.lit_over_unlit(), or_dash(mic), or_dash(cpu),
+             or_dash(row.paper_fps(row.scene->paper.nanovol)), or_dash(over_paper));
   std::fflush(stdout);
 }
 
 /// The second table, of grids.
 void print_structured(const std::vector<Row>& rows) {
-  constexpr const char* format = "{:<16}{:<6}{:>10}{:>10}{:>10}  |{:>9}{:>9}{:>9}{:>9}\n";
+  constexpr const char* format = "{:<16}{:<6}{:>10}{:>10}{:>10}  |{:>9}{:>9}{:>9}{:>9}{:>9}\n";
   fmt::print("\nStructured: grids of the same fields, trilinear, voxels of 1, lit\n");
-  fmt::print(format, "", "", "memory,", "frames", "sweep/", "paper:", "", "", "RBF/");
-  fmt::print(format, "scene", "view", "MB", "a second", "struct.", "MIC", "CPU", "CPU, RBF",
-             "struct.");
+  fmt::print(format, "", "", "memory,", "frames", "sweep/", "paper:", "", "", "", "RBF/");
+  fmt::print(format, "scene", "view", "MB", "a second", "struct.", "MIC", "CPU", "Nanovol",
+             "CPU, RBF", "struct.");
   for (const Row& row : rows) {
     const auto cpu = row.paper_fps(row.scene->paper.structured_cpu);
     const auto mic = row.paper_fps(row.scene->paper.structured_mic);
@@ -162,7 +163,9 @@ void print_structured(const std::vector<Row>& rows) {
     }
     if (cpu && rbf) paper_over = *rbf / *cpu;
     fmt::print(format, row.scene->name, row.view(), or_dash(megabytes), or_dash(fps), or_dash(over),
-               or_dash(mic), or_dash(cpu), or_dash(rbf), or_dash(paper_over));
+               or_dash(mic), or_dash(cpu),
+               or_dash(row.paper_fps(row.scene->paper.structured_nanovol)), or_dash(rbf),
+               or_dash(paper_over));
   }
 }
 
@@ -192,16 +195,20 @@ nlohmann::ordered_json to_json(const Row& row, const BenchJob& job, const Prepar
               {"lit_over_unlit", row.lit_over_unlit()},
               {"paper_cpu_fps", nullptr},
               {"paper_mic_fps", nullptr},
+              {"paper_nanovol_fps", nullptr},
               {"paper_structured_cpu_fps", nullptr},
-              {"paper_structured_mic_fps", nullptr}});
+              {"paper_structured_mic_fps", nullptr},
+              {"paper_structured_nanovol_fps", nullptr}});
   if (row.direct) out["direct"] = to_json(*row.direct);
   if (row.cells) out["cells"] = to_json(*row.cells);
   if (row.structured) out["structured"] = to_json(*row.structured);
   const PaperFigures& paper = row.scene->paper;
   for (const auto& [key, figures] : {std::pair{"paper_cpu_fps", paper.cpu},
                                      {"paper_mic_fps", paper.mic},
+                                     {"paper_nanovol_fps", paper.nanovol},
                                      {"paper_structured_cpu_fps", paper.structured_cpu},
-                                     {"paper_structured_mic_fps", paper.structured_mic}}) {
+                                     {"paper_structured_mic_fps", paper.structured_mic},
+                                     {"paper_structured_nanovol_fps", paper.structured_nanovol}}) {
     if (const auto fps = row.paper_fps(figures)) out[key] = *fps;
   }
   return out;
