@@ -242,6 +242,7 @@ void add_resample_command(CLI::App& program) {
       ->check(CLI::Validator(check_suffix, ""));
   add_voxel_options(*command, *options);
   add_field_options(*command, options->changes);
+  command->remove_option(command->get_option("--interpolation"));  // grids are not resampled
   add_data_options(*command, options->changes);
   command
       ->add_option_function<std::string>(

@@ -305,6 +305,12 @@ void add_lighting_options(CLI::App& command, SceneChanges& changes) {
   };
   CLI::Option* on = add("--lighting", true, "shade by the field's gradient (the default)");
   add("--no-lighting", false, "show colours as they are")->excludes(on);
+  add_triple(command, changes, "--light-direction",
+             "the light's direction, towards it, for shadows (default: from the camera, none)",
+             [](Scene& s, const Vector3d& v) {
+               if (!(length(v) > 0)) throw Error("--light-direction: must not be zero");
+               s.render.lighting.direction = v;
+             });
 }
 
 }  // namespace

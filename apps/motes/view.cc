@@ -75,15 +75,20 @@ void run(Options options) {
   if (const char* token = std::getenv("MOTES_VIEW_TOKEN")) options.server.token = token;
   options.server.base_url = normal_base_url(options.server.base_url);
   const std::filesystem::path path = std::filesystem::absolute(options.path);
+  if (!std::filesystem::exists(path)) throw Error(path, "there is no such file");
   if (options.folder.empty()) options.folder = path.parent_path().string();
 
   server::Files files(options.folder);
-  Scene scene = open_scene(path);  // what is wrong with it is told here, not in the browser
+  Scene scene = open_scene(path);
   options.changes.apply(scene);
   files.allow(scene);
   server::Studio studio;
   server::Server server(options.server, studio, files);
-  studio.open({path.filename().string(), [scene] { return scene; }});
+  studio.open(
+      {.name = path.filename().string(),
+       .scene = [scene] { return scene; },
+       .failed =
+           [](const std::string& error) { fmt::print(stderr, "motes: error: {}\n", error); }});
   print_addresses(server, options.server);
   const StopWhenInterrupted stop([&server] { server.stop(); });
   server.run();

@@ -32,6 +32,8 @@ struct Opening {
   std::function<Scene()> scene;                ///< called on the loader's thread; throws Error
   std::optional<ClientId> client = {};         ///< who asked for it
   std::optional<std::uint32_t> sequence = {};  ///< by which "scene" message, if by one
+  /// Told what was wrong with it, on the studio's thread; may be null.
+  std::function<void(const std::string&)> failed = nullptr;
 };
 
 /// A picture to be saved.
@@ -139,8 +141,9 @@ class Studio {
   std::optional<std::uint64_t> prefetching_;
   std::optional<std::size_t> frames_;      ///< of the document's file, once they are counted
   std::shared_ptr<FrameReader> reader_;    ///< for the lookahead's thread alone
-  const std::atomic<bool> never_ = false;  ///< cancels nothing
-  std::uint64_t opening_ = 0;              ///< counts openings: what an older one brings is dropped
+  std::atomic<bool> cancel_edit_ = false;  ///< of the scene, while it reads
+  std::string opening_error_;  ///< why there is no document, for those who connect later
+  std::uint64_t opening_ = 0;  ///< counts openings: what an older one brings is dropped
 
   Loader loader_;     ///< opens
   Loader lookahead_;  ///< reads what may be wanted next

@@ -33,6 +33,8 @@ void Studio::connect(ClientId client, std::shared_ptr<Outlet> outlet) {
         if (document_) {
           viewer.look_anew(document_->camera());
           viewer.outlet().send_text(scene_text(*document_, frames_, {}));
+        } else if (!opening_error_.empty()) {
+          viewer.outlet().send_text(error_text({}, opening_error_));
         }
         send_clients();
       },
@@ -52,7 +54,10 @@ void Studio::disconnect(ClientId client) {
 }
 
 void Studio::handle(ClientId client, const Message& message) {
-  if (std::holds_alternative<CancelMessage>(message)) loader_.cancel();
+  if (std::holds_alternative<CancelMessage>(message)) {
+    loader_.cancel();
+    cancel_edit_ = true;
+  }
   if (const auto* ack = std::get_if<AckMessage>(&message)) {
     // Timed here: the studio may be busy.
     return post_for(

@@ -9,6 +9,8 @@
 namespace motes::server {
 namespace {
 
+constexpr const char* cancelled_text = "cancelled";
+
 /// Calls work(); what goes wrong with files and scenes becomes text.
 template <class Work>
 std::optional<std::string> error_of(const Work& work) {
@@ -47,13 +49,17 @@ void Studio::start_opening(const Opening& opening) {
             Document::open(opening.name, opening.scene(), &progress, warnings));
       });
     } catch (const Cancelled&) {
-      error = "cancelled";
+      error = cancelled_text;
     }
     post(
         [this, opening, number, document, warnings, error] {
           if (number != opening_) return;  // something else has been asked for since
           if (document) adopt(opening, document, warnings);
-          if (error && *error != "cancelled") send_to_all(error_text(opening.sequence, *error));
+          if (error && *error != cancelled_text) {
+            opening_error_ = *error;
+            if (opening.failed) opening.failed(*error);
+            send_to_all(error_text(opening.sequence, *error));
+          }
           send_to_all(ready_text());
         },
         true);
@@ -112,8 +118,9 @@ void Studio::change_scene(ClientId client, std::uint32_t sequence, const Scene& 
   Warnings warnings;
   LoadProgress progress([this](std::string_view activity,
                                double fraction) { send_to_all(progress_text(activity, fraction)); },
-                        never_);
-  const auto error = error_of([&] {
+                        cancel_edit_);
+  cancel_edit_ = false;
+  const auto edit = [&] {
     if (prefetched_ && prefetched_->frame == scene.frame && scene.frame != frame_before) {
       ParticleSet particles = std::move(prefetched_->particles);
       prefetched_.reset();
@@ -121,7 +128,13 @@ void Studio::change_scene(ClientId client, std::uint32_t sequence, const Scene& 
     } else {
       document_->set_scene(scene, &progress, warnings);
     }
-  });
+  };
+  std::optional<std::string> error;
+  try {
+    error = error_of(edit);
+  } catch (const Cancelled&) {
+    error = cancelled_text;
+  }
   if (progress.has_reported()) send_to_all(ready_text());
   if (error) return viewers_.at(client).outlet().send_text(error_text(sequence, *error));
   for (auto& [id, viewer] : viewers_) viewer.invalidate();

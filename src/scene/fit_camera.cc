@@ -97,9 +97,9 @@ Bounds3d box_of(const std::vector<VisibleSphere>& spheres) {
 }
 
 /// Corners of the part of a grid in which there is something to be seen: magnitudes of a tenth of
-/// the level that encloses most of the field, or of an isosurface at `least_level`. Large grids are
-/// looked at here and there.
-std::array<Point3d, 8> visible_corners(const Grid& grid, double least_level) {
+/// the level that encloses most of the field if it `draws_volume`, or of an isosurface at
+/// `least_level`. Large grids are looked at here and there.
+std::array<Point3d, 8> visible_corners(const Grid& grid, bool draws_volume, double least_level) {
   if (grid.periodic) return corners_of(grid);
   const double excess = static_cast<double>(grid.size()) / samples_looked_at;
   const auto stride = static_cast<std::size_t>(std::max(1.0, std::ceil(std::cbrt(excess))));
@@ -114,8 +114,10 @@ std::array<Point3d, 8> visible_corners(const Grid& grid, double least_level) {
     }
   };
   for_samples([&](float value, const auto& /*index*/) { values.push_back(value); });
-  const double level = enclosing_level(values, signs_of(values));
-  const double least = std::min(0.1 * level, least_level);
+  double least = least_level;
+  if (draws_volume) {
+    least = std::min(least, 0.1 * enclosing_level(values, signs_of(values)));
+  }
   std::array<std::size_t, 3> first = grid.dims, last{};
   for_samples([&](float value, const std::array<std::size_t, 3>& index) {
     if (!(std::abs(static_cast<double>(value)) >= least)) return;
@@ -151,7 +153,8 @@ void add_corners(const std::vector<FieldSource>& sources, const std::vector<Fiel
   const std::size_t times = 1 + spheres.size() / stray_share;
   for (std::size_t f = 0; f < sources.size(); ++f) {
     if (!sources[f].grid) continue;
-    const auto corners = visible_corners(*sources[f].grid, least_level_of(fields, f));
+    const bool draws_volume = f >= fields.size() || fields[f].draws_volume();
+    const auto corners = visible_corners(*sources[f].grid, draws_volume, least_level_of(fields, f));
     for (std::size_t n = 0; n < times; ++n) {
       for (const Point3d& corner : corners) spheres.push_back({corner, 0});
     }

@@ -132,9 +132,17 @@ void add_item(const ParticleSet& particles, const Geometry& item, Drawn& drawn,
     radii.assign(index.size(), source.stick_radius);
     std::vector<bool> selected(particles.size());
     for (const std::uint32_t i : index) selected[i] = true;
-    for (const Bond& bond :
-         with_key("bonds", [&] { return bonds_of(particles, item.bonds, warnings); })) {
+    const auto bonds = with_key("bonds", [&] { return bonds_of(particles, item.bonds, warnings); });
+    for (const Bond& bond : bonds) {
       if (selected[bond.first] && selected[bond.second]) source.bonds.push_back(bond);
+    }
+    const bool any_element =
+        std::any_of(particles.species_names.begin(), particles.species_names.end(),
+                    [](const std::string& name) { return find_element(name) != nullptr; });
+    if (bonds.empty() && !any_element) {
+      warnings.add(
+          "sticks: there are no bonds to draw, for none of the species is a chemical element; what "
+          "numbered types are is for --types or data.types to say");
     }
   }
   std::size_t bad = 0;

@@ -518,6 +518,9 @@ TEST(VisibleSpheres, HoldWhatAGridShows) {
   Field low;
   low.isosurfaces.push_back({1e-6, {}, 1});  // 5.26 widths
   EXPECT_NEAR(farthest_x(visible_spheres({}, {source}, {}, {low})), 2 + 5.26 + 0.5, 0.5);
+  Field high;
+  high.isosurfaces.push_back({0.5, {}, 1});  // 1.18 widths, and no volume
+  EXPECT_NEAR(farthest_x(visible_spheres({}, {source}, {}, {high})), 2 + 1.18 + 0.5, 0.5);
 }
 
 TEST(VisibleSpheres, HoldAllOfAGridThatGoesOn) {
