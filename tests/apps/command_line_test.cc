@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <vector>
 
 #include "apps/command_line.h"
@@ -252,6 +253,21 @@ TEST_F(CommandLine, SticksThatLeaveTheCellAreInThePicture) {
     }
   }
   EXPECT_GT(seen, 100);
+}
+
+TEST_F(CommandLine, ALightFromASideThrowsShadows) {
+  workspace_.write("p.xyz", "2\n\nC 0 0 0\nO 0 0 4\n");
+  const std::string render =
+      "render p.xyz --style spheres --size 64x64 --eye 9,0,2 --target 0,0,2 ";
+  succeed(render + "-o a.npy --light-direction 1,0,0.01");
+  succeed(render + "-o b.npy --light-direction 1,0,5 --save-scene b.json");
+  const std::vector<float> front = pixels("a.npy"), above = pixels("b.npy");
+  EXPECT_LT(std::accumulate(above.begin(), above.end(), 0.0),
+            0.95 * std::accumulate(front.begin(), front.end(), 0.0));
+  succeed("render b.json -o c.npy");
+  EXPECT_EQ(pixels("c.npy"), above);
+  EXPECT_THAT(failure("render p.xyz -o a.png --light-direction 0,0,0", 1), HasSubstr("zero"));
+  EXPECT_THAT(failure("view nope.xyz", 1), HasSubstr("nope.xyz: there is no such file"));
 }
 
 TEST_F(CommandLine, StatisticsHaveEveryKey) {

@@ -12,6 +12,7 @@
 #include <optional>
 #include <string>
 
+#include "core/error.h"
 #include "document/document.h"
 #include "document/input.h"
 #include "image/encode.h"
@@ -113,6 +114,39 @@ TEST(Studio, GivesUpPicturesThatNobodyWaitsFor) {
     EXPECT_TRUE(made.get_future().get());
   }
   EXPECT_EQ(abandoned, 0);
+}
+
+/// Remembers what it is told.
+class TextOutlet : public Outlet {
+ public:
+  void send_text(std::string text) override {
+    const std::lock_guard lock(mutex_);
+    texts_ += text;
+    changed_.notify_all();
+  }
+  void send_frame(std::string /*message*/) override {}
+  bool hears(const std::string& part) {
+    std::unique_lock lock(mutex_);
+    return changed_.wait_for(lock, std::chrono::seconds(60),
+                             [&] { return texts_.find(part) != std::string::npos; });
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::string texts_;
+};
+
+TEST(Studio, TellsWhoComesLaterWhyNothingIsOpen) {
+  Studio studio;
+  std::promise<std::string> failed;
+  studio.open({.name = "nothing",
+               .scene = []() -> Scene { throw Error("it is not there"); },
+               .failed = [&](const std::string& error) { failed.set_value(error); }});
+  EXPECT_EQ(failed.get_future().get(), "it is not there");
+  const auto outlet = std::make_shared<TextOutlet>();
+  studio.connect(1, outlet);
+  EXPECT_TRUE(outlet->hears("it is not there"));
 }
 
 TEST(Studio, StopsWhileItOpens) {
