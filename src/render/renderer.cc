@@ -16,6 +16,7 @@
 
 #include "core/error.h"
 #include "core/stopwatch.h"
+#include "render/balls_within.h"
 #include "render/isosurface_frame.h"
 #include "render/make_surface.h"
 #include "render/render_tile.h"
@@ -185,6 +186,14 @@ SurfaceFrame frame_of(const Surface& surface, const ResolvedScene& scene) {
                             {camera_axes(scene.camera), to_internal(kernels, scene.camera.eye),
                              scene.camera.orthographic_height.has_value()},
                             image_plane(kernels, scene), surface_shading(kernels, scene));
+}
+
+/// Whether ambient light is hidden from isosurfaces by what is farther away than their rays look.
+/// What clip planes cut away hides none, and balls are not cut.
+bool hides_far_light(const ResolvedScene& scene) {
+  const SurfaceSettings& surface = scene.render.surface;
+  return surface.occlusion_samples > 0 && !surface.occlusion_distance &&
+         scene.render.clip_planes.empty();
 }
 
 /// Whether nothing is seen of the fields but their isosurfaces.
@@ -372,6 +381,7 @@ void Renderer::render(const ResolvedScene& scene, const RenderOptions& options, 
   } else {
     FrameContext context = make_context(*kernels_, grids_, scene, options);
     std::optional<ShadedIsosurfaces> isosurfaces;
+    std::optional<Surface> within;
     if (!scene.isosurfaces.empty()) {
       isosurfaces = make_isosurfaces(scene, context, grids_, image_plane(*kernels_, scene),
                                      surface_shading(*kernels_, scene), species_);
@@ -381,6 +391,10 @@ void Renderer::render(const ResolvedScene& scene, const RenderOptions& options, 
                                      std::vector<Vector3f>& directions) {
         prune(frame, place, normal, length, directions);
       };
+      if (hides_far_light(scene) && !solids) {
+        within = balls_within(*kernels_, scene.isosurfaces);
+        isosurfaces->light.surface = within ? &*within : nullptr;
+      }
       if (solids) {
         isosurfaces->light.surface = solids->surface;
         solids->prune = isosurfaces->light.prune;

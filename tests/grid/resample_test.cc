@@ -99,7 +99,7 @@ TEST(Resample, IsTheReferenceForRandomScenes) {
     checked += expect_truth(random.particles, random.scene.fields, lattice, 97);
     if (HasFatalFailure()) return;
   }
-  EXPECT_GT(checked, 10000);
+  EXPECT_GT(checked, 3000 * static_cast<int>(instruction_sets().size()));
 }
 
 ParticleSet random_particles(int count, double size, unsigned seed) {

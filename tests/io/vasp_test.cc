@@ -109,7 +109,8 @@ TEST(Vasp, IsKnownByItsContent) {
 }
 
 TEST(Vasp, VolumesByTheirNameAreGridsHoweverBad) {
-  for (const std::string& text : {std::string(structure), structure + "2 -1 3\n" + values}) {
+  const std::string negative = std::string(structure).append("2 -1 3\n").append(values);
+  for (const std::string& text : {std::string(structure), negative}) {
     for (const std::string name : {"CHGCAR", "AECCAR0.gz", "LOCPOT_bulk"}) {
       const TemporaryFile file(name, text);
       EXPECT_TRUE(is_grid_file(file.path())) << name;

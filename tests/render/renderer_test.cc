@@ -234,7 +234,7 @@ TEST(Renderer, OnePassGivesThePictureOfManyPasses) {
   const Framebuffer one = renderer.render(scene, options);
   double visible = 0;
   for (std::size_t i = 0; i < many.rgba.size(); ++i) {
-    ASSERT_NEAR(one.rgba[i], many.rgba[i], 5e-6);
+    ASSERT_NEAR(one.rgba[i], many.rgba[i], 1e-5);
     visible = std::max(visible, static_cast<double>(many.rgba[i]));
   }
   EXPECT_GT(visible, 0.5);
