@@ -98,6 +98,9 @@ struct Bins {
   std::array<Axis, 3> axes;
   /// Some periodic axis has fewer than three bins: the same two atoms meet in several ways there.
   bool small = false;
+  /// Of each edge of the cell: how many the images of two atoms may be apart from which a third is
+  /// a bond away.
+  std::array<int, 3> most_images{};
 };
 
 /// Edges that span space: the cell's periodic ones, and some across them.
@@ -140,6 +143,11 @@ Bins make_bins(const ParticleSet& particles, const MinimumImage& image, double w
         static_cast<std::int64_t>(std::clamp(wide, 1.0, static_cast<double>(Key::max_bins)));
     axis.per_unit = extent > 0 ? static_cast<double>(axis.count) / extent : 0;
     bins.small = bins.small || (axis.periodic && axis.count < 3);
+    constexpr double many = 100;  // in a cell as thin as no crystal's
+    if (axis.periodic) {
+      bins.most_images[a] =
+          static_cast<int>(std::min(2 * width * (1 + 1e-6) * length(axis.across), many));
+    }
   }
   // Few bins in a row make many rows, which threads share.
   std::sort(bins.axes.begin(), bins.axes.end(),
@@ -243,6 +251,9 @@ class RowSearch {
   /// rows: all rows, sorted; row: one of them.
   void search(const std::vector<Row>& rows, const Row& row) {
     for (const Row& other : rows_around(rows, row)) meet(row, other);
+    if (!bins_.small) return;
+    for (std::size_t i = row.begin; i < row.end; ++i)
+      meet_images(sorted_.atoms[i], sorted_.atoms[i]);
   }
 
  private:
@@ -301,12 +312,39 @@ class RowSearch {
     const Point3d from = atom.position - shift;
     for (std::size_t j = std::max(begin, i + 1); j < end; ++j) {
       const Atom& other = sorted_.atoms[j];
-      Vector3d v = other.position - from;
-      if (bins_.small) v = image_(other.position - atom.position);
-      const double square = dot(v, v);
-      if (square > reach_.square(atom.element, other.element)) continue;
-      if (!(square > shortest_bond * shortest_bond)) continue;
-      bonds_.push_back({std::min(atom.index, other.index), std::max(atom.index, other.index)});
+      if (bins_.small) {
+        meet_images(atom, other);
+      } else if (are_bonded(atom, other, other.position - from)) {
+        bonds_.push_back({std::min(atom.index, other.index), std::max(atom.index, other.index)});
+      }
+    }
+  }
+
+  bool are_bonded(const Atom& a, const Atom& b, const Vector3d& v) const {
+    const double square = dot(v, v);
+    return square <= reach_.square(a.element, b.element) && square > shortest_bond * shortest_bond;
+  }
+
+  /// An atom with all images of another, or of its own.
+  void meet_images(const Atom& a, const Atom& b) {
+    const bool swap = b.index < a.index, same = b.index == a.index;
+    const Atom& first = swap ? b : a;
+    const Atom& second = swap ? a : b;
+    const Vector3d nearest = same ? Vector3d{} : image_(second.position - first.position);
+    if (dot(nearest, nearest) > reach_.square(a.element, b.element)) return;
+    const std::array<int, 3>& most = bins_.most_images;
+    std::array<int, 3> n{};
+    for (n[0] = -most[0]; n[0] <= most[0]; ++n[0]) {
+      for (n[1] = -most[1]; n[1] <= most[1]; ++n[1]) {
+        for (n[2] = -most[2]; n[2] <= most[2]; ++n[2]) {
+          // Of an atom and its own images each bond is there from both ends.
+          if (same && n <= std::array<int, 3>{}) continue;
+          const auto count = [&](std::size_t axis) { return static_cast<std::int8_t>(n[axis]); };
+          const std::array<std::int8_t, 3> image{count(0), count(1), count(2)};
+          if (!are_bonded(first, second, nearest + image_.shift(image))) continue;
+          bonds_.push_back({first.index, second.index, image});
+        }
+      }
     }
   }
 
@@ -319,7 +357,7 @@ class RowSearch {
 
 void sort_bonds(std::vector<Bond>& bonds) {
   tbb::parallel_sort(bonds.begin(), bonds.end(), [](const Bond& a, const Bond& b) {
-    return std::tie(a.first, a.second) < std::tie(b.first, b.second);
+    return std::tie(a.first, a.second, a.image) < std::tie(b.first, b.second, b.image);
   });
 }
 

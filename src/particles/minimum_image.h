@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -24,6 +25,13 @@ class MinimumImage {
   /// What the periodic edges span, by short edges: as many as there are periodic axes, any two of
   /// them at an angle of 90 degrees or more.
   const std::vector<Vector3d>& edges() const { return edges_; }
+  /// So many edges of each.
+  Vector3d shift(const std::array<std::int8_t, 3>& count) const {
+    Vector3d sum;
+    for (std::size_t a = 0; a < edges_.size(); ++a)
+      sum = sum + static_cast<double>(count[a]) * edges_[a];
+    return sum;
+  }
 
  private:
   struct Face {

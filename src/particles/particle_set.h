@@ -1,6 +1,7 @@
 // What every reader makes and all rendering starts from: particles as a structure of arrays.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -21,9 +22,12 @@ struct Property {
   std::vector<float> values;  ///< one a particle
 };
 
-/// A bond between two particles, by index into the ParticleSet; first < second.
+/// A bond between two particles, by index into the ParticleSet; first <= second.
 struct Bond {
   std::uint32_t first = 0, second = 0;
+  /// To which of the second's images: so many edges (MinimumImage::edges()) from the one that is
+  /// nearest to the first.
+  std::array<std::int8_t, 3> image{};
   bool operator==(const Bond&) const = default;
 };
 

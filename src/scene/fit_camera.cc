@@ -238,7 +238,7 @@ void add_geometry(const ParticleSet& particles, const GeometrySource& geometry,
   for_some(geometry.bonds.size(), random, [&](std::size_t b) {
     const Bond& bond = geometry.bonds[b];
     const Point3d first = particles.position(bond.first), second = particles.position(bond.second);
-    const Vector3d across = image(second - first);
+    const Vector3d across = image(second - first) + image.shift(bond.image);
     const double shift = length(across - (second - first));
     if (!(shift > 1e-6 * length(across))) return;
     spheres.push_back({first + 0.5 * across, geometry.stick_radius});

@@ -4,18 +4,27 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 
 #include "particles/minimum_image.h"
 
 namespace motes {
 namespace {
 
+/// What a particle is bonded to.
+struct Partner {
+  std::uint32_t particle;
+  std::array<std::int8_t, 3> image;  ///< Bond::image, from the particle on
+};
+
 /// The partners of each particle: of particle p they are partners[begin[p]] and what follows.
 struct Neighborhoods {
-  std::vector<std::uint32_t> begin, partners;
+  std::vector<std::uint32_t> begin;
+  std::vector<Partner> partners;
 };
 
 Vector3d between(const ParticleSet& particles, std::uint32_t from, std::uint32_t to) {
@@ -27,7 +36,7 @@ Neighborhoods find_neighborhoods(const ParticleSet& particles, std::span<const B
                                  const MinimumImage& image, double length_scale) {
   // Internal lengths are near 1 for the whole of the data.
   const auto has_direction = [&](const Bond& bond) {
-    const Vector3d v = image(between(particles, bond.first, bond.second));
+    const Vector3d v = image(between(particles, bond.first, bond.second)) + image.shift(bond.image);
     const double d = length_scale * length(v);
     return d > 1e-15 && std::isfinite(d);
   };
@@ -36,16 +45,17 @@ Neighborhoods find_neighborhoods(const ParticleSet& particles, std::span<const B
   const auto for_all = [&](auto&& add) {
     for (const Bond& bond : bonds) {
       if (!has_direction(bond)) continue;
-      add(bond.first, bond.second);
-      add(bond.second, bond.first);
+      const auto opposite = [&](std::size_t a) { return static_cast<std::int8_t>(-bond.image[a]); };
+      add(bond.first, {bond.second, bond.image});
+      add(bond.second, {bond.first, {opposite(0), opposite(1), opposite(2)}});
     }
   };
   // Counted two places further on, then where each one's begin one place further on, which filling
   // moves to where the next one's begin.
-  for_all([&](std::uint32_t p, std::uint32_t) { ++n.begin[p + 2]; });
+  for_all([&](std::uint32_t p, const Partner&) { ++n.begin[p + 2]; });
   for (std::size_t p = 2; p < n.begin.size(); ++p) n.begin[p] += n.begin[p - 1];
   n.partners.resize(n.begin.back());
-  for_all([&](std::uint32_t p, std::uint32_t q) { n.partners[n.begin[p + 1]++] = q; });
+  for_all([&](std::uint32_t p, const Partner& q) { n.partners[n.begin[p + 1]++] = q; });
   return n;
 }
 
@@ -89,8 +99,9 @@ Sticks make_sticks(const ParticleSet& particles, std::span<const Bond> bonds,
         for (std::size_t i = range.begin(); i != range.end(); ++i) {
           const std::uint32_t p = particle_of[i];
           for (std::uint32_t s = sticks.begin[i]; s < sticks.begin[i + 1]; ++s) {
-            const std::uint32_t q = n.partners[n.begin[p] + s - sticks.begin[i]];
-            const Vector3d half = 0.5 * kernels.length_scale * image(between(particles, p, q));
+            const Partner& q = n.partners[n.begin[p] + s - sticks.begin[i]];
+            const Vector3d whole = image(between(particles, p, q.particle)) + image.shift(q.image);
+            const Vector3d half = 0.5 * kernels.length_scale * whole;
             sticks.x[s] = static_cast<float>(half.x);
             sticks.y[s] = static_cast<float>(half.y);
             sticks.z[s] = static_cast<float>(half.z);

@@ -11,10 +11,13 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <random>
 #include <set>
 #include <string>
+#include <tuple>
 #include <utility>
+#include <vector>
 
 #include "particles/elements.h"
 #include "particles/minimum_image.h"
@@ -25,25 +28,31 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-/// The length of the shortest of v's images.
-double brute_force_distance(const Cell& cell, const Vector3d& v) {
+/// Calls use(w) with the images w of v in the cell, all that are as short as v or as `reach`.
+template <class F>
+void for_images(const Cell& cell, const Vector3d& v, double reach, F&& use) {
   const std::array<Vector3d, 3>& e = cell.vectors;
   const double volume = dot(e[0], cross(e[1], e[2]));
   std::array<int, 3> most{};
   for (std::size_t a = 0; a < 3; ++a) {
-    // An image as short as v is at most 2 |v| from it, and planes of images are so far apart:
+    // From v to such an image it is so far at most, and planes of images are so far apart:
+    const double way = length(v) + std::max(length(v), reach);
     const double spacing = std::abs(volume) / length(cross(e[(a + 1) % 3], e[(a + 2) % 3]));
-    if (cell.periodic[a]) most[a] = static_cast<int>(2 * length(v) / spacing) + 1;
+    if (cell.periodic[a]) most[a] = static_cast<int>(way / spacing) + 1;
   }
-  double nearest = length(v);
   for (int i = -most[0]; i <= most[0]; ++i) {
     for (int j = -most[1]; j <= most[1]; ++j) {
       for (int k = -most[2]; k <= most[2]; ++k) {
-        nearest =
-            std::min(nearest, length(v + double(i) * e[0] + double(j) * e[1] + double(k) * e[2]));
+        use(v + double(i) * e[0] + double(j) * e[1] + double(k) * e[2]);
       }
     }
   }
+}
+
+/// The length of the shortest of v's images.
+double brute_force_distance(const Cell& cell, const Vector3d& v) {
+  double nearest = length(v);
+  for_images(cell, v, 0, [&](const Vector3d& w) { nearest = std::min(nearest, length(w)); });
   return nearest;
 }
 
@@ -118,26 +127,35 @@ ParticleSet atoms_at(const std::vector<std::pair<std::string, Point3d>>& atoms) 
   return particles;
 }
 
-/// Pairs of atoms within reach; those whose distance is within `doubt` of a limit apart.
+using Pair = std::pair<std::uint32_t, std::uint32_t>;
+
+/// Lengths of the bonds between two atoms' images, and which pairs have one within `doubt` of a
+/// limit.
 struct Expected {
-  std::set<std::pair<std::uint32_t, std::uint32_t>> bonds, doubtful;
+  std::map<Pair, std::vector<double>> lengths;
+  std::set<Pair> doubtful;
 };
 
 Expected brute_force_bonds(const ParticleSet& particles) {
   constexpr double doubt = 1e-9;  // positions are the same; only sums round
   Expected expected;
   for (std::uint32_t i = 0; i < particles.size(); ++i) {
-    for (std::uint32_t j = i + 1; j < particles.size(); ++j) {
+    for (std::uint32_t j = i; j < particles.size(); ++j) {
       const Element* a = find_element(particles.species_names[particles.species[i]]);
       const Element* b = find_element(particles.species_names[particles.species[j]]);
       if (a == nullptr || b == nullptr || (a->number == 1 && b->number == 1)) continue;
-      const Vector3d v = particles.position(j) - particles.position(i);
-      const double d = particles.cell ? brute_force_distance(*particles.cell, v) : length(v);
       const double most = double(a->covalent_radius) + double(b->covalent_radius) + 0.45;
-      if (std::abs(d - most) < doubt || std::abs(d - 0.4) < doubt) {
-        expected.doubtful.emplace(i, j);
-      } else if (d > 0.4 && d < most) {
-        expected.bonds.emplace(i, j);
+      const auto take = [&](const Vector3d& v) {
+        const double d = length(v);
+        if (std::abs(d - most) < doubt || std::abs(d - 0.4) < doubt)
+          expected.doubtful.emplace(i, j);
+        if (d > 0.4 && d < most) expected.lengths[{i, j}].push_back(d);
+      };
+      const Vector3d v = particles.position(j) - particles.position(i);
+      if (particles.cell) {
+        for_images(*particles.cell, v, most, take);
+      } else {
+        take(v);
       }
     }
   }
@@ -147,18 +165,31 @@ Expected brute_force_bonds(const ParticleSet& particles) {
 void expect_brute_force(const ParticleSet& particles, const std::string& what) {
   const std::vector<Bond> found = find_bonds(particles);
   EXPECT_TRUE(std::is_sorted(found.begin(), found.end(), [](const Bond& a, const Bond& b) {
-    return std::pair(a.first, a.second) < std::pair(b.first, b.second);
+    return std::tie(a.first, a.second, a.image) < std::tie(b.first, b.second, b.image);
   })) << what;
-  Expected expected = brute_force_bonds(particles);
-  std::set<std::pair<std::uint32_t, std::uint32_t>> bonds;
+  const MinimumImage image(particles.cell);
+  std::map<Pair, std::vector<double>> lengths;
   for (const Bond& bond : found) {
-    EXPECT_TRUE(bonds.emplace(bond.first, bond.second).second) << what << ": twice";
+    const Vector3d v = particles.position(bond.second) - particles.position(bond.first);
+    const double d = length(image(v) + image.shift(bond.image));
+    // A bond to an image of itself is seen from both its ends.
+    for (int end = bond.first == bond.second ? 0 : 1; end < 2; ++end) {
+      lengths[{bond.first, bond.second}].push_back(d);
+    }
   }
-  for (const auto& pair : expected.doubtful) {
-    bonds.erase(pair);
-    expected.bonds.erase(pair);
+  Expected expected = brute_force_bonds(particles);
+  for (const Pair& pair : expected.doubtful) {
+    lengths.erase(pair);
+    expected.lengths.erase(pair);
   }
-  EXPECT_EQ(bonds, expected.bonds) << what;
+  ASSERT_EQ(lengths.size(), expected.lengths.size()) << what;
+  for (auto& [pair, all] : expected.lengths) {
+    std::vector<double>& mine = lengths[pair];
+    std::sort(all.begin(), all.end());
+    std::sort(mine.begin(), mine.end());
+    ASSERT_EQ(mine.size(), all.size()) << what << ": " << pair.first << " " << pair.second;
+    for (std::size_t k = 0; k < all.size(); ++k) EXPECT_NEAR(mine[k], all[k], 1e-9) << what;
+  }
 }
 
 ParticleSet random_atoms(CellSource& source, const Cell& cell, std::size_t n) {
@@ -208,6 +239,26 @@ TEST(FindBonds, TakesBondsAcrossTheFacesOfACell) {
   EXPECT_THAT(find_bonds(particles), ElementsAre(Bond{0, 1}));
   particles.cell->periodic = {false, true, true};
   EXPECT_THAT(find_bonds(particles), IsEmpty());
+}
+
+// Silicon has four neighbours, iron in its conventional cell eight, a chain one on each side.
+TEST(FindBonds, TakesAllImagesInTheCellsOfCrystals) {
+  const double a = 5.431;
+  ParticleSet silicon = atoms_at({{"Si", {0, 0, 0}}, {"Si", {a / 4, a / 4, a / 4}}});
+  silicon.cell =
+      Cell{{},
+           {Vector3d{0, a / 2, a / 2}, Vector3d{a / 2, 0, a / 2}, Vector3d{a / 2, a / 2, 0}},
+           {true, true, true}};
+  EXPECT_EQ(find_bonds(silicon).size(), 4U);
+  ParticleSet iron = atoms_at({{"Fe", {0, 0, 0}}, {"Fe", {1.43, 1.43, 1.43}}});
+  iron.cell = Cell{
+      {}, {Vector3d{2.86, 0, 0}, Vector3d{0, 2.86, 0}, Vector3d{0, 0, 2.86}}, {true, true, true}};
+  // 2.48 between the two; 2.86 between images of each, three ways: 1.32 + 1.32 + 0.45 = 3.09.
+  EXPECT_EQ(find_bonds(iron).size(), 8U + 3U + 3U);
+  ParticleSet chain = atoms_at({{"C", {0.2, 5, 5}}, {"C", {1.7, 5, 5}}});
+  chain.cell =
+      Cell{{}, {Vector3d{3, 0, 0}, Vector3d{0, 10, 0}, Vector3d{0, 0, 10}}, {true, true, true}};
+  EXPECT_EQ(find_bonds(chain).size(), 2U);
 }
 
 TEST(FindBonds, KeepsToItsRule) {

@@ -76,6 +76,7 @@ TEST(Studio, KeepsUpWithTwoHoursOfEvents) {
   studio.open({"zeolite", [scene] { return scene; }});
   studio.connect(1, outlet);
   studio.handle(1, SizeMessage{32, 32});
+  ASSERT_NE(outlet->wait_for_final(0), "");  // what is opened is looked at anew
   constexpr std::uint32_t num_events = 2 * 3600 * 60;
   Camera camera;
   for (std::uint32_t i = 1; i <= num_events; ++i) {
@@ -96,11 +97,7 @@ TEST(Studio, GivesUpPicturesThatNobodyWaitsFor) {
   studio.open({"zeolite", [scene] { return scene; }});
   studio.connect(1, outlet);
   studio.handle(1, SizeMessage{16, 16});
-  Camera camera;
-  camera.eye = {20, 20, 120};
-  camera.target = {20, 20, 20};
-  studio.handle(1, ViewMessage{1, camera, false});
-  ASSERT_NE(outlet->wait_for_final(1), "");
+  ASSERT_NE(outlet->wait_for_final(0), "");
   std::atomic<int> abandoned = 0;
   for (const bool before : {true, false}) {
     const PictureRequest huge{1, 16384, 16384};

@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
 #include <vector>
 
+#include "particles/minimum_image.h"
 #include "support/particles_at.h"
 #include "surface/brute_force.h"
 #include "surface/random_surface.h"
@@ -73,6 +75,19 @@ TEST(Sticks, GoTowardsTheNearestImageInAPeriodicCell) {
   const Sticks sticks = make_sticks(particles, bonds, kernels.particle_of, kernels.set, 1);
   expect_halves(halves_of(sticks, kernels, 0), {{-0.6, 0, 0}});
   expect_halves(halves_of(sticks, kernels, 1), {{0.6, 0, 0}, {-2, 0, 0}});
+}
+
+TEST(Sticks, GoTowardsTheImageThatABondIsTo) {
+  ParticleSet particles = particles_at({{0.2, 5, 5}, {1.6, 5, 5}});
+  particles.cell = Cell{{}, {Vector3d{3, 0, 0}, {}, {}}, {true, false, false}};
+  const Kernels kernels(particles, {field_of_all(particles, 1, 1, {})});
+  const bool forwards = MinimumImage(particles.cell).edges().at(0).x > 0;
+  const std::int8_t on = forwards ? 1 : -1, back = forwards ? -1 : 1;
+  const std::vector<Bond> bonds{{0, 1}, {0, 1, {back, 0, 0}}, {1, 1, {on, 0, 0}}};
+  const Sticks sticks = make_sticks(particles, bonds, kernels.particle_of, kernels.set, 1);
+  expect_halves(halves_of(sticks, kernels, 0), {{0.7, 0, 0}, {-0.8, 0, 0}});
+  expect_halves(halves_of(sticks, kernels, 1),
+                {{-0.7, 0, 0}, {0.8, 0, 0}, {1.5, 0, 0}, {-1.5, 0, 0}});
 }
 
 TEST(Sticks, BelongToEachKernelOfAParticleAndToNoneThatIsNotThere) {
