@@ -73,7 +73,7 @@ TEST(BallsWithin, AreNoneWhereAKernelAloneSaysNothing) {
 // The inside of a bowl is nearly as dark as rays without end find it.
 TEST(BallsWithin, HideTheLightOfHollows) {
   std::vector<Point3d> points;
-  constexpr double golden = std::numbers::pi * (3 - std::sqrt(5.0));
+  const double golden = std::numbers::pi * (3 - std::sqrt(5.0));
   for (int i = 0; i < 300; ++i) {
     const double z = -6 * (i + 0.5) / 300, r = std::sqrt(36 - z * z);
     points.push_back({r * std::cos(golden * i), r * std::sin(golden * i), z});

@@ -492,8 +492,9 @@ FieldSource bell() {
   grid.steps = {Vector3d{0.5, 0, 0}, {0, 0.5, 0}, {0, 0, 0.5}};
   grid.values.resize(grid.size());
   for (std::size_t n = 0; n < grid.size(); ++n) {
-    const Point3d p = grid.position(static_cast<double>(n % 41), static_cast<double>(n / 41 % 41),
-                                    static_cast<double>(n / 41 / 41));
+    const std::size_t row = n / 41, plane = row / 41;
+    const Point3d p = grid.position(static_cast<double>(n % 41), static_cast<double>(row % 41),
+                                    static_cast<double>(plane));
     const Vector3d off = p - Point3d{2, 3, 4};
     grid.values[n] = static_cast<float>(std::exp(-0.5 * dot(off, off)));
   }
