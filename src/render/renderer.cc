@@ -196,6 +196,21 @@ bool hides_far_light(const ResolvedScene& scene) {
          scene.render.clip_planes.empty();
 }
 
+/// Has isosurfaces hide light from themselves, and they and solids from each other; either of these
+/// may be null. Where there are no solids, `within` stands for what is far. All outlive the frame.
+void hide_light(ShadedIsosurfaces& isosurfaces, SurfaceFrame* solids, const Surface* within) {
+  isosurfaces.light.prune = [&frame = isosurfaces.frame](const Point3d& place,
+                                                         const Vector3d& normal, double length,
+                                                         std::vector<Vector3f>& directions) {
+    prune(frame, place, normal, length, directions);
+  };
+  isosurfaces.light.surface = within;
+  if (solids == nullptr) return;
+  isosurfaces.light.surface = solids->surface;
+  solids->prune = isosurfaces.light.prune;
+  solids->prune_distance = isosurfaces.light.prune_distance;
+}
+
 /// Whether nothing is seen of the fields but their isosurfaces.
 bool draws_surfaces_only(const ResolvedScene& scene) {
   const auto invisible = [](const TransferFunction& function) {
@@ -244,6 +259,20 @@ void for_tiles(const ResolvedScene& scene, const RenderOptions& options, int til
 bool any_colored(const std::vector<FieldSource>& fields) {
   return std::any_of(fields.begin(), fields.end(),
                      [](const FieldSource& field) { return field.colored_by_species; });
+}
+
+/// A picture of surfaces alone, or of nothing.
+void draw_surfaces(const FrameSurfaces& surfaces, const ResolvedScene& scene,
+                   const RenderOptions& options, Framebuffer& image, StageTicks& stages) {
+  std::fill(image.rgba.begin(), image.rgba.end(), 0.0f);
+  if (!surfaces.any()) return;
+  StageClock clock(stages);
+  for_tiles(scene, options, AreaBuffer::size, [&](const Tile& tile) {
+    static thread_local TileLayers layers;
+    find_layers(surfaces, 0, tile, layers);
+    composite_layers(layers, tile, image);
+  });
+  clock.lap(Stage::setup);
 }
 
 }  // namespace
@@ -365,19 +394,8 @@ void Renderer::render(const ResolvedScene& scene, const RenderOptions& options, 
     solids->colors = field_colors ? &*field_colors : &surface_->colors;
     surfaces.solids = &*solids;
   }
-  const auto draw_surfaces_only = [&] {
-    std::fill(image.rgba.begin(), image.rgba.end(), 0.0f);
-    if (!surfaces.any()) return;
-    StageClock clock(all.stages);
-    for_tiles(scene, options, AreaBuffer::size, [&](const Tile& tile) {
-      static thread_local TileLayers layers;
-      find_layers(surfaces, 0, tile, layers);
-      composite_layers(layers, tile, image);
-    });
-    clock.lap(Stage::setup);
-  };
   if (kernels_->fields.empty() || (kernels_->size() == 0 && grids_.empty())) {
-    draw_surfaces_only();
+    draw_surfaces(surfaces, scene, options, image, all.stages);
   } else {
     FrameContext context = make_context(*kernels_, grids_, scene, options);
     std::optional<ShadedIsosurfaces> isosurfaces;
@@ -386,20 +404,8 @@ void Renderer::render(const ResolvedScene& scene, const RenderOptions& options, 
       isosurfaces = make_isosurfaces(scene, context, grids_, image_plane(*kernels_, scene),
                                      surface_shading(*kernels_, scene), species_);
       surfaces.isosurfaces = &*isosurfaces;
-      isosurfaces->light.prune = [&frame = isosurfaces->frame](
-                                     const Point3d& place, const Vector3d& normal, double length,
-                                     std::vector<Vector3f>& directions) {
-        prune(frame, place, normal, length, directions);
-      };
-      if (hides_far_light(scene) && !solids) {
-        within = balls_within(*kernels_, scene.isosurfaces);
-        isosurfaces->light.surface = within ? &*within : nullptr;
-      }
-      if (solids) {
-        isosurfaces->light.surface = solids->surface;
-        solids->prune = isosurfaces->light.prune;
-        solids->prune_distance = isosurfaces->light.prune_distance;
-      }
+      if (!solids && hides_far_light(scene)) within = balls_within(*kernels_, scene.isosurfaces);
+      hide_light(*isosurfaces, solids ? &*solids : nullptr, within ? &*within : nullptr);
     }
     if (surfaces.any() && !context.layers) {
       const double thickness = merged_steps * context.view.planes.step;
@@ -408,7 +414,7 @@ void Renderer::render(const ResolvedScene& scene, const RenderOptions& options, 
       };
     }
     if (draws_surfaces_only(scene)) {
-      draw_surfaces_only();
+      draw_surfaces(surfaces, scene, options, image, all.stages);
     } else {
       render_volume(scene, options, context, image, all);
     }

@@ -60,8 +60,11 @@ ResolvedScene resolve(const Scene& scene, const ParticleSet& particles,
   ResolvedScene resolved;
   resolved.render = scene.render;
   const double aspect = static_cast<double>(scene.render.width) / scene.render.height;
-  resolved.camera =
-      fit_camera(scene, spheres_of_view(particles, sources, geometry, fields), aspect);
+  std::vector<VisibleSphere> spheres;
+  if (!(scene.eye && scene.target && scene.up)) {
+    spheres = spheres_of_view(particles, sources, geometry, fields);
+  }
+  resolved.camera = fit_camera(scene, spheres, aspect);
   // Without fields nothing is sampled.
   resolved.step_size = 1;
   if (scene.render.step_size) {
