@@ -11,7 +11,7 @@ namespace {
 
 constexpr const char* cancelled_text = "cancelled";
 
-/// Calls work(); what goes wrong with files and scenes becomes text.
+/// Calls work(); what goes wrong with files and scenes becomes text, and that it was cancelled.
 template <class Work>
 std::optional<std::string> error_of(const Work& work) {
   try {
@@ -19,6 +19,8 @@ std::optional<std::string> error_of(const Work& work) {
     return {};
   } catch (const Error& error) {
     return error.what();
+  } catch (const Cancelled&) {
+    return cancelled_text;
   } catch (const std::bad_alloc&) {
     return "not enough memory";
   }
@@ -41,22 +43,17 @@ void Studio::start_opening(const Opening& opening) {
         cancelled);
     std::shared_ptr<Document> document;
     Warnings warnings;
-    std::optional<std::string> error;
-    try {
+    const auto error = error_of([&] {
       progress.update("opening " + opening.name, 0);
-      error = error_of([&] {
-        document = std::make_shared<Document>(
-            Document::open(opening.name, opening.scene(), &progress, warnings));
-      });
-    } catch (const Cancelled&) {
-      error = cancelled_text;
-    }
+      document = std::make_shared<Document>(
+          Document::open(opening.name, opening.scene(), &progress, warnings));
+    });
     post(
         [this, opening, number, document, warnings, error] {
           if (number != opening_) return;  // something else has been asked for since
           if (document) adopt(opening, document, warnings);
           if (error && *error != cancelled_text) {
-            opening_error_ = *error;
+            if (!document_) opening_error_ = *error;
             if (opening.failed) opening.failed(*error);
             send_to_all(error_text(opening.sequence, *error));
           }
@@ -120,7 +117,7 @@ void Studio::change_scene(ClientId client, std::uint32_t sequence, const Scene& 
                                double fraction) { send_to_all(progress_text(activity, fraction)); },
                         cancel_edit_);
   cancel_edit_ = false;
-  const auto edit = [&] {
+  const auto error = error_of([&] {
     if (prefetched_ && prefetched_->frame == scene.frame && scene.frame != frame_before) {
       ParticleSet particles = std::move(prefetched_->particles);
       prefetched_.reset();
@@ -128,13 +125,7 @@ void Studio::change_scene(ClientId client, std::uint32_t sequence, const Scene& 
     } else {
       document_->set_scene(scene, &progress, warnings);
     }
-  };
-  std::optional<std::string> error;
-  try {
-    error = error_of(edit);
-  } catch (const Cancelled&) {
-    error = cancelled_text;
-  }
+  });
   if (progress.has_reported()) send_to_all(ready_text());
   if (error) return viewers_.at(client).outlet().send_text(error_text(sequence, *error));
   for (auto& [id, viewer] : viewers_) viewer.invalidate();
