@@ -75,5 +75,41 @@ TEST(CheckFieldsOfStyle, RefusesFieldsThatWouldNotBeDrawn) {
   EXPECT_THROW(check_fields_of_style("blob", {}), Error);
 }
 
+TEST(ParseScene, StylesAreGeometry) {
+  const auto parse_style = [](const std::string& rest) {
+    return parse_scene(R"({"version": 1, "data": {"path": "a.xyz"}, "style": )" + rest + "}",
+                       "s.json");
+  };
+  EXPECT_TRUE(parse_style(R"("spheres")").fields.empty());
+  ASSERT_EQ(parse_style(R"("spheres")").geometry.size(), 1u);
+  const Scene both = parse_style(R"("volume+balls", "fields": [{"name": "a"}])");
+  ASSERT_EQ(both.fields.size(), 1u);
+  EXPECT_EQ(both.fields[0].name, "a");
+  ASSERT_EQ(both.geometry.size(), 2u);
+  EXPECT_EQ(both.geometry[1].type, Geometry::Type::sticks);
+  EXPECT_EQ(parse_style(R"("volume")").fields.size(), 1u);
+}
+
+TEST(ParseScene, StylesAreOfWhatTheDataHave) {
+  const auto look = [](const std::filesystem::path& path) {
+    return DataContents{.particles = path != "dir/heat.nrrd", .grids = !path.empty()};
+  };
+  const auto parse_style = [&](const std::string& rest) {
+    return parse_scene(R"({"version": 1, )" + rest + "}", "dir/s.json", look);
+  };
+  Scene scene = parse_style(R"("data": {"path": "heat.nrrd"}, "style": "surface")");
+  EXPECT_TRUE(scene.fields.at(0).grid);
+  EXPECT_TRUE(scene.fields[0].fitted_isosurfaces);
+  EXPECT_TRUE(scene.geometry.empty());
+  scene =
+      parse_style(R"("data": {"path": "a.cube"}, "fields": [{"grid": {}}], "style": "surface")");
+  EXPECT_EQ(scene.geometry.size(), 2u);
+  // A scene without data.
+  scene = parse_scene(R"({"version": 1, "fields": [{"grid": "heat.nrrd"}], "style": "surface"})",
+                      "dir/s.json");
+  EXPECT_TRUE(scene.geometry.empty());
+  EXPECT_TRUE(scene.fields.at(0).fitted_isosurfaces);
+}
+
 }  // namespace
 }  // namespace motes

@@ -21,6 +21,13 @@ using Clock = Client::Clock;
 /// Far more than anything here should take.
 constexpr auto very_long = 20s;
 
+/// Of a server that soon leaves clients which do not take what they are sent.
+ServerOptions impatient() {
+  ServerOptions options;
+  options.timeouts.taking = 300ms;
+  return options;
+}
+
 /// A connection without a client that understands it.
 class RawConnection {
  public:
@@ -125,9 +132,7 @@ TEST(SlowClients, ThatAnswerPingsAreKept) {
 }
 
 TEST(SlowClients, ThatAcknowledgeNothingAreLeft) {
-  ServerOptions options;
-  options.timeouts.taking = 300ms;
-  const RunningServer server(options);
+  const RunningServer server(impatient());
   TestClient good(server), slow(server);
   slow.set_size(64, 48);
   EXPECT_TRUE(is_closed(slow));
@@ -135,9 +140,7 @@ TEST(SlowClients, ThatAcknowledgeNothingAreLeft) {
 }
 
 TEST(SlowClients, ThatAcknowledgeAreKept) {
-  ServerOptions options;
-  options.timeouts.taking = 300ms;
-  const RunningServer server(options);
+  const RunningServer server(impatient());
   TestClient client(server);
   client.wait_for("scene");
   client.set_size(64, 48);
@@ -149,9 +152,7 @@ TEST(SlowClients, ThatAcknowledgeAreKept) {
 }
 
 TEST(SlowClients, ThatTalkAndReadNothingAreLeft) {
-  ServerOptions options;
-  options.timeouts.taking = 300ms;
-  const RunningServer server(options);
+  const RunningServer server(impatient());
   TestClient good(server), deaf(server);
   deaf.set_size(64, 48);
   bool left = false;
@@ -169,9 +170,7 @@ TEST(SlowClients, ThatTalkAndReadNothingAreLeft) {
 }
 
 TEST(SlowClients, ThatDoNotTakeTextsAreLeft) {
-  ServerOptions options;
-  options.timeouts.taking = 300ms;
-  const RunningServer server(options);
+  const RunningServer server(impatient());
   TestClient good(server);
   auto scene = good.wait_for("scene").at("scene");
   RawConnection deaf(server);

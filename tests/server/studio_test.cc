@@ -69,14 +69,24 @@ std::string picture_of(const Scene& scene, const Camera& camera, int width, int 
   return encode_png(to_display(image, settings.termination_opacity, settings.background));
 }
 
-TEST(Studio, KeepsUpWithTwoHoursOfEvents) {
+/// A studio that shows a scene to its client 1, in pictures of `side` pixels.
+struct OpenStudio {
   Scene scene = open_scene(zeolite);
   Studio studio;
-  const auto outlet = std::make_shared<EagerOutlet>(studio);
-  studio.open({"zeolite", [scene] { return scene; }});
-  studio.connect(1, outlet);
-  studio.handle(1, SizeMessage{32, 32});
-  ASSERT_NE(outlet->wait_for_final(0), "");  // what is opened is looked at anew
+  std::shared_ptr<EagerOutlet> outlet = std::make_shared<EagerOutlet>(studio);
+
+  explicit OpenStudio(int side) {
+    studio.open({"zeolite", [scene = scene] { return scene; }});
+    studio.connect(1, outlet);
+    studio.handle(1, SizeMessage{side, side});
+    // What is opened is looked at anew, whatever was looked at before.
+    EXPECT_NE(outlet->wait_for_final(0), "");
+  }
+};
+
+TEST(Studio, KeepsUpWithTwoHoursOfEvents) {
+  OpenStudio open(32);
+  Studio& studio = open.studio;
   constexpr std::uint32_t num_events = 2 * 3600 * 60;
   Camera camera;
   for (std::uint32_t i = 1; i <= num_events; ++i) {
@@ -86,18 +96,13 @@ TEST(Studio, KeepsUpWithTwoHoursOfEvents) {
     if (i % 100 == 0) studio.handle(1, PickMessage{i, 16, 16});
     if (i % 1000 == 0) studio.handle(1, HistogramMessage{});
   }
-  EXPECT_EQ(outlet->wait_for_final(num_events), picture_of(scene, camera, 32, 32));
-  EXPECT_FALSE(outlet->was_stale());
+  EXPECT_EQ(open.outlet->wait_for_final(num_events), picture_of(open.scene, camera, 32, 32));
+  EXPECT_FALSE(open.outlet->was_stale());
 }
 
 TEST(Studio, GivesUpPicturesThatNobodyWaitsFor) {
-  Scene scene = open_scene(zeolite);
-  Studio studio;
-  const auto outlet = std::make_shared<EagerOutlet>(studio);
-  studio.open({"zeolite", [scene] { return scene; }});
-  studio.connect(1, outlet);
-  studio.handle(1, SizeMessage{16, 16});
-  ASSERT_NE(outlet->wait_for_final(0), "");
+  OpenStudio open(16);
+  Studio& studio = open.studio;
   std::atomic<int> abandoned = 0;
   for (const bool before : {true, false}) {
     const PictureRequest huge{1, 16384, 16384};
