@@ -13,8 +13,7 @@ int main(int argc, char** argv) try {
   const motes::Scene scene;
   const auto fields = motes::expand_fields(scene, particles);
   const auto sources = motes::make_field_sources(particles, fields, scene.kernel, warnings);
-
-  const auto geometry = motes::make_geometry_source(particles, scene.geometry, warnings);
+  auto geometry = motes::make_geometry_source(particles, scene.geometry, warnings);
 
   const motes::Renderer renderer(particles, sources, geometry);
   const auto resolved =

@@ -1,8 +1,12 @@
 // Puts the library's steps in their order.
 #include "document/prepare.h"
 
+#include <algorithm>
+#include <string>
 #include <utility>
 
+#include "particles/bonds.h"
+#include "particles/elements.h"
 #include "render/resolve.h"
 #include "scene/fill_in.h"
 
@@ -16,6 +20,22 @@ GatheredScene gather_scene(const Scene& scene, const std::vector<Field>& fields,
                                         progress, grids);
   gathered.geometry = make_geometry_source(particles, scene.geometry, warnings);
   return gathered;
+}
+
+void warn_of_missing_bonds(const ParticleSet& particles, const GeometrySource& geometry,
+                           Warnings& warnings) {
+  if (geometry.stick_radius == 0 || !geometry.bonds.empty()) return;
+  const auto is_element = [](const std::string& name) { return find_element(name) != nullptr; };
+  const auto& names = particles.species_names;
+  if (std::none_of(names.begin(), names.end(), is_element)) {
+    warnings.add(
+        "sticks: there are no bonds to draw, for none of the species is a chemical element; what "
+        "numbered types are is for --types or data.types to say");
+  } else if (particles.size() > 1 && BondRule(names).longest() > 0) {
+    warnings.add(
+        "sticks: there are no bonds to draw, for no two of the atoms are as near as bonds of their "
+        "elements are, lengths taken for angstrom");
+  }
 }
 
 DataExtent data_extent(const ParticleSet& particles, const Renderer& renderer,
@@ -33,10 +53,10 @@ PreparedScene prepare_scene(Scene scene, const ParticleSet& particles,
                             Warnings& warnings) {
   color_by_species(scene, particles);
   const auto fields = expand_fields(scene, particles, grids);
-  const auto [sources, geometry] =
-      gather_scene(scene, fields, particles, grids, progress, warnings);
+  auto [sources, geometry] = gather_scene(scene, fields, particles, grids, progress, warnings);
   if (progress != nullptr) progress->update("building the tree", 0);
   Renderer renderer(particles, sources, geometry);
+  warn_of_missing_bonds(particles, geometry, warnings);
   ResolvedScene resolved = resolve(scene, particles, visible_fields(fields), sources, geometry,
                                    renderer.kernels(), progress, renderer.grids());
   renderer.prepare(resolved.render.engine);

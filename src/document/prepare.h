@@ -25,6 +25,11 @@ GatheredScene gather_scene(const Scene& scene, const std::vector<Field>& fields,
                            const ParticleSet& particles, const std::vector<LoadedGrid>& grids,
                            Progress* progress, Warnings& warnings);
 
+/// Says why sticks are not seen where the atoms, by the file or by distance, have no bonds.
+/// `geometry` is what a Renderer was made with.
+void warn_of_missing_bonds(const ParticleSet& particles, const GeometrySource& geometry,
+                           Warnings& warnings);
+
 /// Where the data are.
 struct DataExtent {
   Bounds3d bounds;

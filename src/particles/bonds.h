@@ -1,6 +1,9 @@
-// Bonds between atoms: those of a file, or by distance where it has none.
+// Bonds between atoms: those of a file, and the rule for those by distance.
 #pragma once
 
+#include <array>
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "core/report.h"
@@ -8,23 +11,44 @@
 
 namespace motes {
 
-/// Bonds by distance: two atoms are bonded where the distance d of the one to an image of the other
+/// Which atoms are bonded by distance: two where the distance d of the one to an image of the other
 /// is
 ///
 ///     0.4 A < d <= r_i + r_j + 0.45 A
 ///
 /// with the covalent radii of their elements (Cordero et al. 2008), but never two hydrogens: the
 /// rule of OpenEye's OEDetermineConnectivity and of Open Babel. The file's length unit is taken for
-/// angstrom. Species that are no elements, and positions that are not finite, have no bonds. In a
-/// small periodic cell an atom may be bonded to several images of another, and to its own.
-///
-/// Sorted by `first`, then `second`, then `image`. In parallel, n log n; the result does not depend
-/// on the number of threads. Takes 48 bytes a particle while it works, and 12 a bond. Precondition:
-/// fewer than 2^32 particles.
-std::vector<Bond> find_bonds(const ParticleSet& particles);
+/// angstrom. Species that are no elements have no bonds.
+class BondRule {
+ public:
+  static constexpr std::uint8_t no_element = 0;
 
-/// The bonds that the particles came with, each once, sorted as above. Those of a particle to
-/// itself are left out, with a warning that counts them.
+  explicit BondRule(const std::vector<std::string>& species_names);
+
+  /// Atomic numbers of the species, or no_element.
+  const std::vector<std::uint8_t>& elements() const { return elements_; }
+  /// For two atoms that far apart, squared; any of them may be no_element.
+  bool holds(std::uint8_t a, std::uint8_t b, double square) const {
+    return square <= squares_[index(a, b)] && square > shortest * shortest;
+  }
+  /// The longest bond that there may be; 0: none.
+  double longest() const { return longest_; }
+
+ private:
+  static constexpr double shortest = 0.4;  // angstrom
+  static constexpr std::size_t max_elements = 97;
+  static std::size_t index(std::uint8_t a, std::uint8_t b) { return max_elements * a + b; }
+
+  std::vector<std::uint8_t> elements_;
+  std::array<double, max_elements * max_elements> squares_{};
+  double longest_ = 0;
+};
+
+/// By first, then second, then image. In parallel.
+void sort_bonds(std::vector<Bond>& bonds);
+
+/// The bonds that the particles came with, each once, sorted. Those of a particle to itself are
+/// left out, with a warning that counts them.
 std::vector<Bond> file_bonds(const ParticleSet& particles, Warnings& warnings);
 
 }  // namespace motes

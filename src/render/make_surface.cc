@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "scene/transfer_function.h"
+#include "surface/find_bonds.h"
 #include "surface/make_sticks.h"
 
 namespace motes {
@@ -100,7 +101,7 @@ void set_colors(const GeometrySource& geometry, const UninitializedVector<std::u
 
 }  // namespace
 
-Surface make_surface(const ParticleSet& particles, const GeometrySource& geometry,
+Surface make_surface(const ParticleSet& particles, GeometrySource& geometry,
                      const std::vector<FieldSource>& sources, const KernelOrder& order,
                      const KernelSet& kernels, FieldValues& field_values) {
   Surface surface;
@@ -110,6 +111,10 @@ Surface make_surface(const ParticleSet& particles, const GeometrySource& geometr
   set_radii(geometry, drawn, kernels.length_scale, surface);
   set_colors(geometry, drawn, surface.colors);
   field_values = find_field_values(kernels, geometry, particle_of, drawn);
+  if (!geometry.bonds_among.empty()) {
+    geometry.bonds =
+        find_bonds(particles, std::exchange(geometry.bonds_among, {}), particle_of, kernels);
+  }
   if (!geometry.bonds.empty()) {
     surface.sticks = make_sticks(particles, geometry.bonds, particle_of, kernels,
                                  static_cast<float>(geometry.stick_radius * kernels.length_scale));

@@ -13,10 +13,11 @@
 
 namespace motes {
 
-/// What draws `geometry`, whose particles are all in `kernels`; these were built from `sources` in
-/// `order`, and must outlive the surface. A particle that several fields have is drawn once.
-/// `field_values` become those of particles in their fields' colours, or empty.
-Surface make_surface(const ParticleSet& particles, const GeometrySource& geometry,
+/// What draws `geometry`, whose bonds by distance are found first, and whose particles are all in
+/// `kernels`; these were built from `sources` in `order`, and must outlive the surface. A particle
+/// that several fields have is drawn once. `field_values` become those of particles in their
+/// fields' colours, or empty.
+Surface make_surface(const ParticleSet& particles, GeometrySource& geometry,
                      const std::vector<FieldSource>& sources, const KernelOrder& order,
                      const KernelSet& kernels, FieldValues& field_values);
 

@@ -277,8 +277,13 @@ void draw_surfaces(const FrameSurfaces& surfaces, const ResolvedScene& scene,
 
 }  // namespace
 
+Renderer::Renderer(const ParticleSet& particles, const std::vector<FieldSource>& fields) {
+  GeometrySource nothing;
+  *this = Renderer(particles, fields, nothing);
+}
+
 Renderer::Renderer(const ParticleSet& particles, const std::vector<FieldSource>& fields,
-                   const GeometrySource& geometry) {
+                   GeometrySource& geometry) {
   const Stopwatch stopwatch;
   if (geometry.empty() && !any_colored(fields)) {
     grids_ = make_grid_fields(fields);
@@ -292,7 +297,7 @@ Renderer::Renderer(const ParticleSet& particles, const std::vector<FieldSource>&
 }
 
 void Renderer::build(const ParticleSet& particles, const std::vector<FieldSource>& fields,
-                     const GeometrySource& geometry) {
+                     GeometrySource& geometry) {
   surface_.reset();
   field_values_ = {};
   *kernels_ = {};  // its memory is free before the new one needs it
@@ -312,8 +317,14 @@ void Renderer::build(const ParticleSet& particles, const std::vector<FieldSource
 }
 
 TreeUpdate Renderer::set_particles(const ParticleSet& particles,
+                                   const std::vector<FieldSource>& fields) {
+  GeometrySource nothing;
+  return set_particles(particles, fields, nothing);
+}
+
+TreeUpdate Renderer::set_particles(const ParticleSet& particles,
                                    const std::vector<FieldSource>& fields,
-                                   const GeometrySource& geometry) {
+                                   GeometrySource& geometry) {
   const Stopwatch stopwatch;
   cells_.reset();
   TreeUpdate update = TreeUpdate::refitted;

@@ -60,10 +60,12 @@ enum class TreeUpdate { refitted, rebuilt };
 
 class Renderer {
  public:
-  /// Gathers the fields' kernels, grids and what is drawn of `geometry`, and builds the tree; needs
-  /// none of the arguments afterwards. Throws Error as GridSampler does.
+  /// Gathers the fields' kernels and grids, and builds the tree; needs none of the arguments
+  /// afterwards. Throws Error as GridSampler does.
+  Renderer(const ParticleSet& particles, const std::vector<FieldSource>& fields);
+  /// The same with what is drawn of `geometry`, whose bonds by distance are found through the tree.
   Renderer(const ParticleSet& particles, const std::vector<FieldSource>& fields,
-           const GeometrySource& geometry = {});
+           GeometrySource& geometry);
 
   /// The picture: linear, premultiplied. The scene's transfer functions are one a field of the
   /// constructor's; its `fields` are not looked at, so kernel_scale and support_factor come from
@@ -79,8 +81,10 @@ class Renderer {
   /// long as the fields keep their numbers of particles and the tree has not lost its worth; else,
   /// the first time and where there is geometry, builds it anew, which from then on keeps 4 more
   /// bytes a particle. Needs none of the arguments afterwards. Throws what the constructor throws.
+  TreeUpdate set_particles(const ParticleSet& particles, const std::vector<FieldSource>& fields);
+  /// The same with geometry, as in the constructor.
   TreeUpdate set_particles(const ParticleSet& particles, const std::vector<FieldSource>& fields,
-                           const GeometrySource& geometry = {});
+                           GeometrySource& geometry);
 
   /// Throws what render() throws for a scene that it cannot render.
   void check(const ResolvedScene& scene) const;
@@ -105,7 +109,7 @@ class Renderer {
 
  private:
   void build(const ParticleSet& particles, const std::vector<FieldSource>& fields,
-             const GeometrySource& geometry);
+             GeometrySource& geometry);
 
   /// Samples the fields, cut by the context's layers.
   void render_volume(const ResolvedScene& scene, const RenderOptions& options,

@@ -53,7 +53,10 @@ struct GeometrySource {
   /// 0xrrggbb, one an index. See by_field().
   std::vector<std::uint32_t> srgb;
   std::vector<Bond> bonds;  ///< between particles that are drawn
-  float stick_radius = 0;   ///< file's length
+  /// One a particle: whether bonds by distance are still to be found for it, through the tree;
+  /// empty: none are.
+  std::vector<bool> bonds_among;
+  float stick_radius = 0;  ///< file's length
 
   bool empty() const { return index.empty(); }
 };

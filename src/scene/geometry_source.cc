@@ -91,13 +91,22 @@ std::vector<std::uint32_t> colors_of(const ParticleSet& particles, const Geometr
   return colors;
 }
 
-std::vector<Bond> bonds_of(const ParticleSet& particles, BondSource source, Warnings& warnings) {
-  if (source == BondSource::file && particles.bonds.empty()) {
+/// Takes the bonds of a sticks' item from the file, or leaves them to be found by distance.
+void take_bonds(const ParticleSet& particles, BondSource from,
+                const std::vector<std::uint32_t>& index, GeometrySource& source,
+                Warnings& warnings) {
+  if (from == BondSource::file && particles.bonds.empty()) {
     throw Error("the file has none; expected \"distance\", or a file with bonds");
   }
-  const bool of_file =
-      source == BondSource::file || (source == BondSource::automatic && !particles.bonds.empty());
-  return of_file ? file_bonds(particles, warnings) : find_bonds(particles);
+  std::vector<bool> selected(particles.size());
+  for (const std::uint32_t i : index) selected[i] = true;
+  if (from == BondSource::distance || particles.bonds.empty()) {
+    source.bonds_among = std::move(selected);
+    return;
+  }
+  for (const Bond& bond : file_bonds(particles, warnings)) {
+    if (selected[bond.first] && selected[bond.second]) source.bonds.push_back(bond);
+  }
 }
 
 /// What is drawn of each particle, while the items are gone through.
@@ -130,20 +139,7 @@ void add_item(const ParticleSet& particles, const Geometry& item, Drawn& drawn,
   } else {
     source.stick_radius = static_cast<float>(std::get<double>(item.radius));
     radii.assign(index.size(), source.stick_radius);
-    std::vector<bool> selected(particles.size());
-    for (const std::uint32_t i : index) selected[i] = true;
-    const auto bonds = with_key("bonds", [&] { return bonds_of(particles, item.bonds, warnings); });
-    for (const Bond& bond : bonds) {
-      if (selected[bond.first] && selected[bond.second]) source.bonds.push_back(bond);
-    }
-    const bool any_element =
-        std::any_of(particles.species_names.begin(), particles.species_names.end(),
-                    [](const std::string& name) { return find_element(name) != nullptr; });
-    if (bonds.empty() && !any_element) {
-      warnings.add(
-          "sticks: there are no bonds to draw, for none of the species is a chemical element; what "
-          "numbered types are is for --types or data.types to say");
-    }
+    with_key("bonds", [&] { take_bonds(particles, item.bonds, index, source, warnings); });
   }
   std::size_t bad = 0;
   for (std::size_t k = 0; k < index.size(); ++k) {
@@ -159,9 +155,7 @@ void add_item(const ParticleSet& particles, const Geometry& item, Drawn& drawn,
       drawn.radius[i] = std::max(drawn.radius[i], radii[k]);
       continue;
     }
-    drawn.radius[i] = drawn.any[i]
-                          ? std::max(radii[k], source.bonds.empty() ? 0 : source.stick_radius)
-                          : radii[k];
+    drawn.radius[i] = drawn.any[i] ? std::max(radii[k], source.stick_radius) : radii[k];
     drawn.any[i] = true;
     drawn.srgb[i] = colors[k];
   }

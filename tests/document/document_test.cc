@@ -1,5 +1,6 @@
 #include "document/document.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -12,6 +13,10 @@
 
 namespace motes {
 namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
 
 const TransferFunction ramp{{{0.1, {0, 0, 1}, 0}, {1.5, {1, 1, 0}, 1.5}}, false};
 
@@ -169,6 +174,23 @@ TEST_F(DocumentTest, TellsOfItsData) {
   EXPECT_EQ(document.count_frames(nullptr), 3u);
   EXPECT_EQ(info.frames, 3u);
   EXPECT_EQ(document.memory().particles, 60u);
+}
+
+TEST_F(DocumentTest, SaysWhyThereAreNoSticks) {
+  Geometry sticks;
+  sticks.type = Geometry::Type::sticks;
+  sticks.radius = 0.1;
+  Scene some = scene();
+  some.geometry = {sticks};
+  open(some);
+  EXPECT_THAT(warnings_.lines(), IsEmpty());  // among atoms so dense there are bonds
+  std::ofstream(path()) << "2\n\nSi 0 0 0\nSi 5 0 0\n";
+  open(some);
+  EXPECT_THAT(warnings_.lines(), ElementsAre(HasSubstr("no two of the atoms are as near")));
+  std::ofstream(path()) << "2\n\nclay 0 0 0\nclay 1 0 0\n";
+  open(some);
+  EXPECT_THAT(warnings_.lines(),
+              ElementsAre(testing::_, HasSubstr("none of the species is a chemical element")));
 }
 
 TEST_F(DocumentTest, FramesAreReadAheadOnAnotherThread) {

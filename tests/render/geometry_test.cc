@@ -42,7 +42,8 @@ TEST(DrawnOnly, ParticlesAddNothingToTheFields) {
   }
   const Renderer alone(s.particles, s.scene.fields);
   // Balls so small that no ray meets one.
-  const Renderer with(s.particles, s.scene.fields, balls(others, 1e-6F));
+  geometry = balls(others, 1e-6F);
+  const Renderer with(s.particles, s.scene.fields, geometry);
   EXPECT_EQ(with.kernels().size(), s.particles.size());
   EXPECT_EQ(with.kernels().box().min, alone.kernels().box().min);
   s.scene.render.lighting.enabled = true;
@@ -95,7 +96,8 @@ TEST(Geometry, IsCutByClipPlanes) {
   ASSERT_GT(left.size(), 10u);
   ASSERT_LT(left.size(), 50u);
   const auto render_balls = [&](const std::vector<std::uint32_t>& index) {
-    return Renderer(s.particles, {}, balls(index, 0.7F)).render(s.scene, {});
+    GeometrySource geometry = balls(index, 0.7F);
+    return Renderer(s.particles, {}, geometry).render(s.scene, {});
   };
   s.scene.transfer_functions.clear();
   const Framebuffer cut = render_balls(all);
@@ -114,7 +116,8 @@ TEST(Geometry, CutsTheVolumeWhereRaysMeetIt) {
   s.scene.render.lighting.ambient = 1;
   s.scene.render.lighting.diffuse = s.scene.render.lighting.specular = 0;
   s.scene.transfer_functions = {ramp(1, 0.5)};
-  const Renderer renderer(s.particles, s.scene.fields, balls({1, 2}, 0.7F));
+  GeometrySource geometry = balls({1, 2}, 0.7F);
+  const Renderer renderer(s.particles, s.scene.fields, geometry);
   // The reference's layers, from closed forms: ambient light alone, so that colours are constant.
   const Color blue = color_from_srgb(0x3366cc);
   const int width = s.scene.render.width, height = s.scene.render.height;
@@ -145,7 +148,8 @@ TEST(Geometry, IsDrawnWithoutAnyField) {
   s.scene.transfer_functions.clear();
   std::vector<std::uint32_t> all(s.particles.size());
   for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;
-  const Renderer renderer(s.particles, {}, balls(all, 0.6F));
+  GeometrySource geometry = balls(all, 0.6F);
+  const Renderer renderer(s.particles, {}, geometry);
   const Framebuffer image = renderer.render(s.scene, {});
   float opaque = 0;
   for (std::size_t i = 3; i < image.rgba.size(); i += 4) {
@@ -159,7 +163,8 @@ TEST(Geometry, IsDrawnWithoutAnyField) {
 
 TEST(Geometry, EdgesAreAntialiasedWithoutMoreSamplesOfTheVolume) {
   PlainScene s = plain_scene({{0, 0, 0}, {0.4, 0.3, 2}}, 12);
-  const Renderer renderer(s.particles, s.scene.fields, balls({1}, 0.9F));
+  GeometrySource geometry = balls({1}, 0.9F);
+  const Renderer renderer(s.particles, s.scene.fields, geometry);
   RenderStatistics one, nine;
   s.scene.render.surface.antialiasing = 1;
   const Framebuffer hard = renderer.render(s.scene, {}, &one);

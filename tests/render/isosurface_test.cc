@@ -22,11 +22,18 @@ PlainScene one_kernel() {
 }
 float radius_at(double value) { return static_cast<float>(2 * std::sqrt(-2 * std::log(value))); }
 
-GeometrySource ball(float radius, std::uint32_t srgb) { return {{0}, {radius}, {srgb}, {}, 0}; }
+GeometrySource ball(float radius, std::uint32_t srgb) {
+  GeometrySource source;
+  source.index = {0};
+  source.radius = {radius};
+  source.srgb = {srgb};
+  return source;
+}
 
 TEST(Isosurface, OfOneKernelIsABallInTheVolume) {
   PlainScene s = one_kernel();
-  const Renderer with_ball(s.particles, s.scene.fields, ball(radius_at(0.5), 0x3366cc));
+  GeometrySource geometry = ball(radius_at(0.5), 0x3366cc);
+  const Renderer with_ball(s.particles, s.scene.fields, geometry);
   const Renderer alone(s.particles, s.scene.fields);
   ResolvedScene surface = s.scene;
   surface.isosurfaces = {{0, 0.5, 1, {color_from_srgb(0x3366cc)}}};
@@ -58,8 +65,8 @@ TEST(Isosurface, AloneLeavesWhatIsBehindInPart) {
   EXPECT_NEAR(empty[1], green, 1e-5);
   EXPECT_NEAR(empty[3], 1 - left * 0.5F, 1e-5);
   // A ball within all of it.
-  const std::vector<float> filled =
-      middle(Renderer(s.particles, s.scene.fields, ball(0.8F, 0x0000ff)));
+  GeometrySource within = ball(0.8F, 0x0000ff);
+  const std::vector<float> filled = middle(Renderer(s.particles, s.scene.fields, within));
   EXPECT_NEAR(filled[0], front, 1e-5);
   EXPECT_NEAR(filled[1], 0.5F * 0.25F, 1e-5);
   EXPECT_NEAR(filled[2], 0.5F * 0.75F, 1e-5);
@@ -75,7 +82,7 @@ TEST(Isosurface, HidesTheLightOfWhatIsWithinButForWhatIsCutAway) {
   s.scene.isosurfaces = {{0, 0.5, 1, {{1, 1, 1}}}};
   s.scene.camera.eye = {0, 0, 7};
   s.scene.camera.fov_degrees = 4;  // so that what a pixel shows is the middle of the ball
-  const GeometrySource within = ball(0.8F, 0xffffff);
+  GeometrySource within = ball(0.8F, 0xffffff);
   const auto brightness = [&](double plane, bool surface) {
     ResolvedScene scene = s.scene;
     scene.render.clip_planes = {{{0, 0, 1}, plane}};
@@ -102,7 +109,8 @@ TEST(Isosurface, ThatIsTranslucentTakesNoLight) {
   s.scene.render.surface = {3, 64, {}, true, 5};
   s.scene.render.lighting.direction = Vector3d{1, 1, 1};
   s.scene.camera.eye = {0, 0, 7};
-  const Renderer renderer(s.particles, s.scene.fields, ball(0.8F, 0xffffff));
+  GeometrySource within = ball(0.8F, 0xffffff);
+  const Renderer renderer(s.particles, s.scene.fields, within);
   const Framebuffer alone = renderer.render(s.scene, {});
   // A shell that is not seen itself: the ball within is as bright as without it.
   s.scene.isosurfaces = {{0, 0.5, 0, {{1, 1, 1}}}};

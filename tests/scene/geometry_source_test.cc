@@ -64,13 +64,13 @@ TEST(GeometrySource, TakesPropertiesAndLeavesOutWhatIsNone) {
   EXPECT_THAT(warnings.lines(), ElementsAre(HasSubstr("1 of 4 particles are not drawn")));
 }
 
-TEST(GeometrySource, DrawsBondsByDistanceWithJoints) {
+TEST(GeometrySource, LeavesBondsByDistanceToTheTreeAndDrawsJoints) {
   Warnings warnings;
   const GeometrySource source = source_of(
       R"([{"type": "spheres", "radius": 0.1, "select": {"species": "O"}},
           {"type": "sticks", "radius": 0.2, "color": "#0000ff"}])",
       warnings);
-  EXPECT_EQ(source.bonds, (std::vector<Bond>{{0, 1}, {0, 2}}));
+  EXPECT_THAT(source.bonds_among, ElementsAre(true, true, true, true));
   EXPECT_FLOAT_EQ(source.stick_radius, 0.2F);
   // The oxygen keeps its colour, but no ball is thinner than its sticks.
   EXPECT_THAT(source.radius, ElementsAre(0.2F, 0.2F, 0.2F, 0.2F));
