@@ -176,6 +176,7 @@ SurfaceShading surface_shading(const KernelSet& kernels, const ResolvedScene& sc
     shading.occlusion_distance = *settings.occlusion_distance * kernels.length_scale;
   }
   shading.shadows = settings.shadows;
+  shading.seed = settings.seed;
   shading.light_radius = 0.5 * settings.light_angle * std::numbers::pi / 180;
   return shading;
 }

@@ -147,8 +147,8 @@ std::vector<Geometry> read_geometry(const Value& value) {
 }
 
 SurfaceSettings read_surface_settings(const Value& value) {
-  value.check_keys(
-      {"antialiasing", "ambient_occlusion", "occlusion_distance", "shadows", "light_angle"});
+  value.check_keys({"antialiasing", "ambient_occlusion", "occlusion_distance", "shadows",
+                    "light_angle", "seed"});
   SurfaceSettings settings;
   value.with("antialiasing",
              [&](const Value& v) { settings.antialiasing = static_cast<int>(v.integer(1, 8)); });
@@ -161,6 +161,10 @@ SurfaceSettings read_surface_settings(const Value& value) {
   value.with("light_angle", [&](const Value& v) {
     settings.light_angle = v.number_from_zero();
     if (settings.light_angle > 90) v.expected("an angle of 0 to 90 degrees");
+  });
+  value.with("seed", [&](const Value& v) {
+    settings.seed =
+        static_cast<std::uint32_t>(v.integer(0, std::numeric_limits<std::uint32_t>::max()));
   });
   return settings;
 }
@@ -213,7 +217,8 @@ json to_json(const SurfaceSettings& settings) {
   json out{{"antialiasing", settings.antialiasing},
            {"ambient_occlusion", settings.occlusion_samples},
            {"shadows", settings.shadows},
-           {"light_angle", settings.light_angle}};
+           {"light_angle", settings.light_angle},
+           {"seed", settings.seed}};
   if (settings.occlusion_distance) out["occlusion_distance"] = *settings.occlusion_distance;
   return out;
 }

@@ -108,6 +108,7 @@ struct SurfaceSettings {
       occlusion_distance;  ///< what is farther away occludes nothing; file's length
   bool shadows = true;     ///< if the lighting has a direction
   double light_angle = 3;  ///< how large the light is seen, degrees; 0: hard shadows
+  std::uint32_t seed = 0;  ///< of the directions in which light is looked for
   bool operator==(const SurfaceSettings&) const = default;
 };
 

@@ -161,6 +161,21 @@ TEST(Geometry, IsDrawnWithoutAnyField) {
   EXPECT_EQ(image, renderer.render(s.scene, {.threads = 1}));
 }
 
+TEST(Geometry, IsInTheLightOfTheDirectionsThatASeedDraws) {
+  PlainScene s = plain_scene(some_points(), 16);
+  std::vector<std::uint32_t> all(s.particles.size());
+  for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;
+  GeometrySource geometry = balls(all, 1);
+  s.scene.transfer_functions.clear();
+  const Renderer renderer(s.particles, {}, geometry);
+  const Framebuffer image = renderer.render(s.scene, {});
+  EXPECT_EQ(renderer.render(s.scene, {}), image);
+  s.scene.render.surface.seed = 1;
+  const double difference = compare_images(renderer.render(s.scene, {}), image).max;
+  EXPECT_GT(difference, 0);
+  EXPECT_LT(difference, 0.1);  // noise, and little of it
+}
+
 TEST(Geometry, EdgesAreAntialiasedWithoutMoreSamplesOfTheVolume) {
   PlainScene s = plain_scene({{0, 0, 0}, {0.4, 0.3, 2}}, 12);
   GeometrySource geometry = balls({1}, 0.9F);

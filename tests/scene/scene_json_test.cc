@@ -420,7 +420,7 @@ RC_GTEST_PROP(SceneToJson, ReadsBackEqual, ()) {
     sticks.radius = 0.25;
     sticks.bonds = BondSource::distance;
     scene.geometry = {balls, sticks};
-    scene.render.surface = {2, 64, 3.5, false, 0};
+    scene.render.surface = {2, 64, 3.5, false, 0, 7};
   }
   for (int n = *rc::gen::inRange(0, 3); n > 0; --n) {
     scene.render.clip_planes.push_back({{0, -1, 0.25 * n}, random_double(-30, 30)});

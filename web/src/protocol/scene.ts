@@ -106,6 +106,7 @@ export interface SurfaceSettings {
   occlusion_distance?: number;
   shadows?: boolean;
   light_angle?: number;
+  seed?: number;
 }
 
 export interface ClipPlane {
