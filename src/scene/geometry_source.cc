@@ -139,8 +139,8 @@ void warn_of_no_sticks(const ParticleSet& particles, std::size_t found, Warnings
         "sticks: none of the {} bonds is between two particles that are both selected", found));
   } else if (any_element) {
     warnings.add(fmt::format(
-        "sticks: there are no bonds to draw, for no two atoms are as near as bonds are by the "
-        "rule for distances in angstrom; the data's unit of length: {}",
+        "sticks: there are no bonds to draw: none by distance, which are as long as covalent radii "
+        "in angstrom tell, and never between two hydrogens; the data's unit of length: {}",
         particles.length_unit.empty() ? "unknown" : printable(particles.length_unit)));
   } else {
     warnings.add(

@@ -127,8 +127,7 @@ TEST(GeometrySource, SaysOnceWhyThereAreNoSticks) {
   };
   EXPECT_THAT(warnings_of(pairs("C")), ElementsAre());
   EXPECT_THAT(warnings_of(pairs("H")),
-              ElementsAre(HasSubstr("sticks: there are no bonds to draw, for no two atoms are as "
-                                    "near as bonds are")));
+              ElementsAre(HasSubstr("sticks: there are no bonds to draw: none by distance")));
   EXPECT_THAT(warnings_of(pairs("1")),
               ElementsAre(HasSubstr("none of the species is a chemical element")));
   sticks.select.index = {{1, 2}};
