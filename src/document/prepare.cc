@@ -1,12 +1,41 @@
 // Puts the library's steps in their order.
 #include "document/prepare.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
 #include <utility>
+#include <vector>
 
 #include "render/resolve.h"
 #include "scene/fill_in.h"
 
 namespace motes {
+namespace {
+
+/// Says how many balls want the colour of their field but are in none.
+void warn_of_want_of_fields(const ParticleSet& particles, const GatheredScene& gathered,
+                            Warnings& warnings) {
+  const GeometrySource& geometry = gathered.geometry;
+  const auto wanting = std::count_if(geometry.srgb.begin(), geometry.srgb.end(), &by_field);
+  if (wanting == 0) return;
+  std::vector<bool> has_field(particles.size());
+  for (const FieldSource& source : gathered.sources) {
+    for (const std::uint32_t i : source.index) has_field[i] = true;
+  }
+  std::size_t without = 0;
+  for (std::size_t k = 0; k < geometry.srgb.size(); ++k) {
+    without += by_field(geometry.srgb[k]) && !has_field[geometry.index[k]];
+  }
+  if (without == 0) return;
+  warnings.add(fmt::format(
+      "geometry: {} of {} particles that are coloured by their field are in none that is shown; "
+      "they have the colours of their elements or species",
+      without, wanting));
+}
+
+}  // namespace
 
 GatheredScene gather_scene(const Scene& scene, const std::vector<Field>& fields,
                            const ParticleSet& particles, const std::vector<LoadedGrid>& grids,
@@ -14,7 +43,8 @@ GatheredScene gather_scene(const Scene& scene, const std::vector<Field>& fields,
   GatheredScene gathered;
   gathered.sources = make_field_sources(particles, visible_fields(fields), scene.kernel, warnings,
                                         progress, grids);
-  gathered.geometry = make_geometry_source(particles, scene.geometry, warnings);
+  gathered.geometry = make_geometry_source(particles, scene.geometry, warnings, progress);
+  warn_of_want_of_fields(particles, gathered, warnings);
   return gathered;
 }
 
