@@ -5,6 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <vector>
+
+#include "core/error.h"
+#include "field/probe.h"
 
 namespace motes {
 namespace {
@@ -63,6 +68,77 @@ bool any_in_view(const Renderer& renderer, const Camera& camera, double aspect) 
   return false;
 }
 
+/// About how many pixels high all that there is to see is in the image.
+double height_in_pixels(const DataExtent& data, const Camera& camera, int image_height) {
+  const double distance =
+      camera.orthographic_height ? 1 : length(data.bounds.center() - camera.eye);
+  return length(data.bounds.diagonal()) / (2 * half_height(camera) * distance) * image_height;
+}
+
+struct ValueRange {
+  double min = 0, max = 0;
+  bool contains(double value) const { return min <= value && value <= max; }
+};
+
+/// Of a field of particles: 0, and what it is at its particles, or many of them.
+ValueRange range_at_particles(const KernelSet& kernels, std::size_t field) {
+  constexpr std::size_t particles_looked_at = 1 << 16;
+  const std::size_t stride = 1 + kernels.size() / particles_looked_at;
+  std::vector<Point3d> points;
+  for (std::size_t i = 0; i < kernels.size(); i += stride) {
+    if (kernels.field_of(i) != field) continue;
+    const Vector3d from_origin{kernels.x[i], kernels.y[i], kernels.z[i]};
+    points.push_back(kernels.origin + from_origin / kernels.length_scale);
+  }
+  const std::vector<FieldSample> samples = probe(kernels, points);
+  ValueRange range;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const double value = samples[k * kernels.fields.size() + field].value;
+    range.min = std::min(range.min, value);
+    range.max = std::max(range.max, value);
+  }
+  return range;
+}
+
+ValueRange range_of(const GridField& grid) {
+  ValueRange range{std::numeric_limits<double>::infinity(),
+                   -std::numeric_limits<double>::infinity()};
+  for (const MacroCells::Range& cell : grid.cells->ranges()) {
+    range.min = std::min(range.min, double{cell.min});
+    range.max = std::max(range.max, double{cell.max});
+  }
+  // (cells' bounds are a little wider than the values, which shows where one of these is 0)
+  const double least = 1e-5 * std::max(std::abs(range.min), std::abs(range.max));
+  for (double* end : {&range.min, &range.max}) *end = std::abs(*end) < least ? 0 : *end;
+  return range;
+}
+
+/// Names the isosurfaces at values that their fields do not take, those of particles only if they
+/// are `of_particles`. Whether there are any.
+bool warn_of_levels_not_reached(const Renderer& renderer, const ResolvedScene& scene,
+                                bool of_particles, Warnings& warnings) {
+  const KernelSet& kernels = renderer.kernels();
+  const GridFields& grids = renderer.grids();
+  bool any = false;
+  for (const ResolvedIsosurface& isosurface : scene.isosurfaces) {
+    const auto grid = std::find_if(grids.begin(), grids.end(), [&](const GridField& candidate) {
+      return candidate.field == isosurface.field;
+    });
+    const bool is_grid = grid != grids.end();
+    if (!is_grid && !of_particles) continue;
+    const ValueRange range =
+        is_grid ? range_of(*grid) : range_at_particles(kernels, isosurface.field);
+    if (range.contains(isosurface.value)) continue;
+    any = true;
+    warnings.add(
+        fmt::format("the field '{}' does not reach its isosurface at {:.4g}; {} from {:.4g} "
+                    "to {:.4g}",
+                    printable(kernels.fields[isosurface.field].name), isosurface.value,
+                    is_grid ? "its values go" : "at its particles it goes", range.min, range.max));
+  }
+  return any;
+}
+
 }  // namespace
 
 bool warn_of_large_steps(const Renderer& renderer, double step_size, Warnings& warnings) {
@@ -81,27 +157,39 @@ bool warn_of_large_steps(const Renderer& renderer, double step_size, Warnings& w
   return true;
 }
 
-void warn_of_empty_picture(const Framebuffer& image, const Renderer& renderer, const Camera& camera,
-                           const DataExtent& data, bool between_samples, Warnings& warnings) {
+void warn_of_empty_picture(const Framebuffer& image, const Renderer& renderer,
+                           const ResolvedScene& scene, const DataExtent& data, bool between_samples,
+                           Warnings& warnings) {
   float largest = 0;
   for (std::size_t i = 3; i < image.rgba.size(); i += 4) {
     largest = std::max(largest, image.rgba[i]);
   }
-  if (largest >= least_visible) return;
-  if (any_in_view(renderer, camera, static_cast<double>(image.width) / image.height)) {
-    if (between_samples) return;
+  const bool empty = largest < least_visible;
+  const bool level_not_reached = warn_of_levels_not_reached(renderer, scene, empty, warnings);
+  if (!empty) return;
+  if (any_in_view(renderer, scene.camera, static_cast<double>(image.width) / image.height)) {
+    if (between_samples || level_not_reached) return;
+    if (height_in_pixels(data, scene.camera, image.height) < 3) {
+      warnings.add(
+          fmt::format("what is in view is no larger than a pixel; expected {}",
+                      scene.camera.orthographic_height
+                          ? "a smaller orthographic height"
+                          : fmt::format("a nearer eye, or a smaller fov than {:.6g} degrees",
+                                        scene.camera.fov_degrees)));
+      return;
+    }
     if (renderer.kernels().fields.empty()) {
       warnings.add(
           "none of the balls and sticks in view is seen; expected larger radii, or clip planes "
-          "that "
-          "leave some of them");
+          "that leave some of them");
       return;
     }
     warnings.add(
         fmt::format("the {} in view are too transparent to be seen (largest opacity "
                     "{:.2g}); expected a larger extinction in the transfer function, or a range "
-                    "with the field's values in it",
-                    renderer.grids().empty() ? "particles" : "fields", largest));
+                    "with the field's values in it{}",
+                    renderer.grids().empty() ? "particles" : "fields", largest,
+                    scene.isosurfaces.empty() ? "" : ", or isosurfaces of a larger opacity"));
     return;
   }
   warnings.add(fmt::format(

@@ -144,7 +144,7 @@ void run(const Options& options) {
   const Framebuffer image = with_place(options.path, options.changes, [&] {
     return render_frames(renderer, prepared.resolved, options, console, statistics);
   });
-  warn_of_empty_picture(image, renderer, prepared.resolved.camera, prepared.extent, between_samples,
+  warn_of_empty_picture(image, renderer, prepared.resolved, prepared.extent, between_samples,
                         console.warnings());
   write_image(output, format, image, scene.render.termination_opacity, scene.render.background);
   output.commit();

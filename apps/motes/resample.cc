@@ -118,6 +118,31 @@ Lattice choose_lattice(const Options& options, const Prepared& prepared) {
   return lattice_of_size(box, longest / static_cast<double>(counts[0] - 1));
 }
 
+/// Where the samples are too far apart to show the fields.
+void warn_of_large_voxels(const Options& options, const Lattice& lattice, const Prepared& prepared,
+                          const std::vector<Grid>& grids, Warnings& warnings) {
+  const auto& dims = lattice.dims;
+  const bool chosen = options.voxels && (*options.voxels)[1] != 0;
+  if (!chosen && dims == std::array<std::size_t, 3>{2, 2, 2}) {
+    const Vector3d extent = prepared.kernels.box().diagonal();
+    warnings.add(fmt::format(
+        "the grid is a single voxel of {:.4g}, for the volume is {:.4g} x {:.4g} x {:.4g}; by "
+        "default it would be {:.3g}",
+        lattice.step.x, extent.x, extent.y, extent.z, prepared.voxel_size));
+  }
+  for (std::size_t f = 0; f < grids.size(); ++f) {
+    const auto& values = grids[f].values;
+    if (std::any_of(values.begin(), values.end(), [](float value) { return value != 0; })) continue;
+    const FieldKernels& field = prepared.kernels.fields[f];
+    warnings.add(fmt::format(
+        "all {} x {} x {} samples of the field '{}' are 0: they are {:.4g} apart, its kernels "
+        "{:.4g} wide or less; expected a smaller --voxel-size",
+        dims[0], dims[1], dims[2], printable(field.name),
+        std::min({lattice.step.x, lattice.step.y, lattice.step.z}),
+        2 * field.kernel.support() * field.max_radius));
+  }
+}
+
 void run(const Options& options) {
   Console console;
   const ThreadLimit limit(options.threads);
@@ -145,7 +170,9 @@ void run(const Options& options) {
     const Lattice lattice = choose_lattice(options, prepared);
     expect_to_fit(lattice, prepared.kernels.fields.size(),
                   options.memory.value_or(available_memory()));
-    return resample(prepared.kernels, lattice, &console);
+    std::vector<Grid> sampled = resample(prepared.kernels, lattice, &console);
+    warn_of_large_voxels(options, lattice, prepared, sampled, console.warnings());
+    return sampled;
   });
   console.update("writing", 0);
   for (Grid& grid : grids) grid.length_unit = prepared.length_unit;

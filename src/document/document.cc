@@ -283,8 +283,8 @@ Camera Document::fit(double aspect) const {
   open.eye.reset();
   open.target.reset();
   open.up.reset();
-  const std::vector<VisibleSphere> spheres =
-      spheres_of_view(particles_, sources_, geometry_, visible_fields(fields_));
+  const std::vector<VisibleSphere> spheres = spheres_of_view(
+      particles_, sources_, geometry_, visible_fields(fields_), renderer_->kernels());
   Camera camera = fit_camera(open, spheres, aspect);
   if (camera.orthographic_height) {
     const CameraAxes axes = camera_axes(camera);

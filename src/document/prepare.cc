@@ -1,16 +1,45 @@
 // Puts the library's steps in their order.
 #include "document/prepare.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cstdint>
 #include <string>
 #include <utility>
+#include <vector>
 
+#include "core/error.h"
 #include "particles/bonds.h"
 #include "particles/elements.h"
 #include "render/resolve.h"
 #include "scene/fill_in.h"
 
 namespace motes {
+namespace {
+
+/// Says how many balls want the colour of their field but are in none.
+void warn_of_want_of_fields(const ParticleSet& particles, const GatheredScene& gathered,
+                            Warnings& warnings) {
+  const GeometrySource& geometry = gathered.geometry;
+  const auto wanting = std::count_if(geometry.srgb.begin(), geometry.srgb.end(), &by_field);
+  if (wanting == 0) return;
+  std::vector<bool> has_field(particles.size());
+  for (const FieldSource& source : gathered.sources) {
+    for (const std::uint32_t i : source.index) has_field[i] = true;
+  }
+  std::size_t without = 0;
+  for (std::size_t k = 0; k < geometry.srgb.size(); ++k) {
+    without += by_field(geometry.srgb[k]) && !has_field[geometry.index[k]];
+  }
+  if (without == 0) return;
+  warnings.add(fmt::format(
+      "geometry: {} of {} particles that are coloured by their field are in none that is shown; "
+      "they have the colours of their elements or species",
+      without, wanting));
+}
+
+}  // namespace
 
 GatheredScene gather_scene(const Scene& scene, const std::vector<Field>& fields,
                            const ParticleSet& particles, const std::vector<LoadedGrid>& grids,
@@ -18,13 +47,14 @@ GatheredScene gather_scene(const Scene& scene, const std::vector<Field>& fields,
   GatheredScene gathered;
   gathered.sources = make_field_sources(particles, visible_fields(fields), scene.kernel, warnings,
                                         progress, grids);
-  gathered.geometry = make_geometry_source(particles, scene.geometry, warnings);
+  gathered.geometry = make_geometry_source(particles, scene.geometry, warnings, progress);
+  warn_of_want_of_fields(particles, gathered, warnings);
   return gathered;
 }
 
 void warn_of_missing_bonds(const ParticleSet& particles, const GeometrySource& geometry,
                            Warnings& warnings) {
-  if (geometry.stick_radius == 0 || !geometry.bonds.empty()) return;
+  if (geometry.bonds_among.empty() || !geometry.bonds.empty()) return;
   const auto is_element = [](const std::string& name) { return find_element(name) != nullptr; };
   const auto& names = particles.species_names;
   if (std::none_of(names.begin(), names.end(), is_element)) {
@@ -32,9 +62,10 @@ void warn_of_missing_bonds(const ParticleSet& particles, const GeometrySource& g
         "sticks: there are no bonds to draw, for none of the species is a chemical element; what "
         "numbered types are is for --types or data.types to say");
   } else if (particles.size() > 1 && BondRule(names).longest() > 0) {
-    warnings.add(
-        "sticks: there are no bonds to draw, for no two of the atoms are as near as bonds of their "
-        "elements are, lengths taken for angstrom");
+    warnings.add(fmt::format(
+        "sticks: there are no bonds to draw: none by distance, which are as long as covalent radii "
+        "in angstrom tell; the data's unit of length: {}",
+        particles.length_unit.empty() ? "unknown" : printable(particles.length_unit)));
   }
 }
 

@@ -33,8 +33,20 @@ std::string expected_size(const NrrdHeader& header, std::uint64_t num_samples) {
                      size_of(header.type));
 }
 
+void warn_if_swapped(const std::filesystem::path& file, std::string_view bytes,
+                     const NrrdHeader& header, const ReadOptions& options) {
+  if (options.warnings == nullptr || !looks_swapped(bytes, header.type, header.big_endian)) return;
+  const auto name = [](bool big) { return big ? "big" : "little"; };
+  options.warnings->add(
+      Error(file, fmt::format("has values that make no sense with 'endian: {}', but would with "
+                              "'endian: {}', in the other order of bytes",
+                              name(header.big_endian), name(!header.big_endian)))
+          .what());
+}
+
 void read_raw(const std::filesystem::path& file, std::string_view stored, const NrrdHeader& header,
-              std::uint64_t num_samples, UninitializedVector<float>& values) {
+              std::uint64_t num_samples, UninitializedVector<float>& values,
+              const ReadOptions& options) {
   const std::uint64_t size = num_samples * size_of(header.type);
   const std::uint64_t skip =
       header.byte_skip >= 0
@@ -45,6 +57,7 @@ void read_raw(const std::filesystem::path& file, std::string_view stored, const 
     throw Error(file, fmt::format("holds {} bytes of values; {}", stored.size(),
                                   expected_size(header, num_samples)));
   }
+  warn_if_swapped(file, stored, header, options);
   values.resize(num_samples);
   convert_scalars(stored, header.type, header.big_endian, values);
 }
@@ -76,6 +89,7 @@ void read_compressed(const std::filesystem::path& file, std::string_view stored,
     if (values.capacity() < filled + count) {
       values.reserve(std::min(num_samples, std::max(filled + count, 2 * filled)));
     }
+    if (filled == 0) warn_if_swapped(file, {block.data(), count * value_bytes}, header, options);
     values.resize(filled + count);
     convert_scalars({block.data(), count * value_bytes}, header.type, header.big_endian,
                     std::span(values).subspan(filled));
@@ -127,7 +141,7 @@ std::vector<Grid> read_nrrd(const std::filesystem::path& path, const ReadOptions
   auto& values = grids[0].values;
   switch (header.encoding) {
     case NrrdEncoding::raw:
-      read_raw(file, stored, header, num_samples, values);
+      read_raw(file, stored, header, num_samples, values, options);
       break;
     case NrrdEncoding::text:
       stored.remove_prefix(

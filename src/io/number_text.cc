@@ -50,7 +50,8 @@ const char* parse_fortran_real(const char* begin, const char* end, double& value
   return number ? token_end : nullptr;
 }
 
-NumberText::NumberText(const std::filesystem::path& file, TextBlock text, std::uint64_t count)
+NumberText::NumberText(const std::filesystem::path& file, TextBlock text, std::uint64_t count,
+                       std::string_view what)
     : file_(file), rest_(text) {
   split(text);
   tbb::parallel_for(std::size_t{0}, chunks_.size(), [&](std::size_t i) {
@@ -66,7 +67,7 @@ NumberText::NumberText(const std::filesystem::path& file, TextBlock text, std::u
     line += num_lines;
   }
   if (first < count) {
-    throw Error(file, line, fmt::format("the file ends after {} of {} values", first, count));
+    throw Error(file, line, fmt::format("{} ends after {} of {} values", what, first, count));
   }
   drop_behind(count);
 }
@@ -101,11 +102,12 @@ void NumberText::fail(const Chunk& chunk, const char* token) const {
               fmt::format("expected a number, found '{}'", printable(next_token(left))));
 }
 
-void expect_no_more(const std::filesystem::path& file, TextBlock rest, std::uint64_t count) {
+void expect_no_more(const std::filesystem::path& file, TextBlock rest, std::uint64_t count,
+                    std::string_view what) {
   LineReader lines(file, rest, true);
   if (!lines.skip_blank_lines()) return;
   std::string_view line = lines.next("");
-  lines.fail(fmt::format("expected the end of the file after {} values, found '{}'", count,
+  lines.fail(fmt::format("expected the end of {} after {} values, found '{}'", what, count,
                          printable(next_token(line))));
 }
 

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <string_view>
 #include <vector>
 
 #include "io/reader.h"
@@ -20,9 +21,10 @@ const char* parse_fortran_real(const char* begin, const char* end, double& value
 /// that are not there; parsed when asked for, on all threads.
 class NumberText {
  public:
-  /// Throws Error, "the file ends after K of COUNT values", if the text has fewer tokens. `file`
-  /// and the text must outlive this.
-  NumberText(const std::filesystem::path& file, TextBlock text, std::uint64_t count);
+  /// Throws Error, "the file ends after K of COUNT values", if the text has fewer tokens, with what
+  /// the text is in place of the file if it is a part of it. `file` and the text must outlive this.
+  NumberText(const std::filesystem::path& file, TextBlock text, std::uint64_t count,
+             std::string_view what = "the file");
 
   /// What follows the last number.
   TextBlock rest() const { return rest_; }
@@ -70,7 +72,8 @@ class NumberText {
 };
 
 /// Throws Error, naming the line, if there is anything but blanks in `rest`, behind the last of
-/// `count` values.
-void expect_no_more(const std::filesystem::path& file, TextBlock rest, std::uint64_t count);
+/// the `count` values of the file, or of `what` else they are.
+void expect_no_more(const std::filesystem::path& file, TextBlock rest, std::uint64_t count,
+                    std::string_view what = "the file");
 
 }  // namespace motes

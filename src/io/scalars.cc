@@ -7,6 +7,7 @@
 
 #include <bit>
 #include <cassert>
+#include <cmath>
 
 #include "core/error.h"
 #include "io/bytes.h"
@@ -43,7 +44,34 @@ auto with_type(ScalarType type, F&& f) {
   return f(double{});
 }
 
+template <class T>
+bool real_numbers_look_swapped(std::string_view bytes, bool swap) {
+  constexpr std::size_t looked_at = 4096;
+  const std::size_t count = bytes.size() / sizeof(T);
+  std::size_t num = 0, usual = 0, usual_swapped = 0, useless = 0;
+  const auto between = [](T value, double low, double high) {
+    return std::abs(value) >= low && std::abs(value) <= high;
+  };
+  for (std::size_t i = 0; i < count; i += 1 + count / looked_at) {
+    const T value = load_scalar<T>(bytes.data() + i * sizeof(T), swap);
+    if (value == 0) continue;
+    const T swapped = load_scalar<T>(bytes.data() + i * sizeof(T), !swap);
+    ++num;
+    usual += between(value, 1e-12, 1e12);
+    usual_swapped += between(swapped, 1e-12, 1e12);
+    useless += !between(value, 1e-36, 1e36);
+  }
+  return useless > 0 && 2 * usual < num && 20 * usual_swapped > 19 * num;
+}
+
 }  // namespace
+
+bool looks_swapped(std::string_view bytes, ScalarType type, bool big_endian) {
+  const bool swap = big_endian != (std::endian::native == std::endian::big);
+  if (type == ScalarType::float32) return real_numbers_look_swapped<float>(bytes, swap);
+  if (type == ScalarType::float64) return real_numbers_look_swapped<double>(bytes, swap);
+  return false;
+}
 
 std::size_t size_of(ScalarType type) {
   return with_type(type, [](auto value) { return sizeof(value); });

@@ -43,6 +43,12 @@ std::size_t size_of(ScalarType type);
 void convert_scalars(std::string_view bytes, ScalarType type, bool big_endian,
                      std::span<float> out);
 
+/// Whether the numbers in `bytes` make no sense in this byte order and all do in the other: real
+/// numbers of which more than half are not finite or far from 1, some beyond all use, while
+/// in the other order they lie between 1e-12 and 1e12 but for a few. Looks at some of many, leaves
+/// out what is 0 either way, and says nothing of whole numbers, of which all make sense.
+bool looks_swapped(std::string_view bytes, ScalarType type, bool big_endian);
+
 /// Samples of a grid with `dims` along its axes. Throws Error if those of `num_grids` of them are
 /// more than half of the machine's memory holds as floats, so that products of counts that a file
 /// claims never overflow.

@@ -4,6 +4,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <numeric>
 #include <optional>
@@ -39,12 +40,13 @@ std::optional<ScalarType> scalar_type(std::string_view name) {
 class ArrayReader {
  public:
   ArrayReader(const std::filesystem::path& path, const VtiHeader& header, const VtiArray& array,
-              ScalarType type, std::uint64_t num_samples, const ReadOptions& options)
+              ScalarType type, const std::array<std::size_t, 3>& dims, const ReadOptions& options)
       : path_(path),
         header_(header),
         array_(array),
         type_(type),
-        num_samples_(num_samples),
+        dims_(dims),
+        num_samples_(count_samples(path, dims)),
         options_(options) {}
 
   UninitializedVector<float> read() {
@@ -64,12 +66,19 @@ class ArrayReader {
     throw Error(path_, array_.line, fmt::format("array '{}': {}", printable(array_.name), message));
   }
 
+  std::string samples_of_extent() const {
+    return fmt::format("{} x {} x {} {} by the Extent", dims_[0], dims_[1], dims_[2],
+                       array_.of_cells ? "cells" : "points");
+  }
+
   std::uint64_t value_bytes() const { return num_samples_ * size_of(type_); }
 
   void read_text(UninitializedVector<float>& values) const {
     const TextBlock text{array_.text, array_.line};
-    const NumberText numbers(path_, text, num_samples_);
-    expect_no_more(path_, numbers.rest(), num_samples_);
+    const std::string what =
+        fmt::format("array '{}' of {}", printable(array_.name), samples_of_extent());
+    const NumberText numbers(path_, text, num_samples_, what);
+    expect_no_more(path_, numbers.rest(), num_samples_, what);
     values.resize(num_samples_);
     numbers.parse(options_,
                   [&](std::uint64_t n, double value) { values[n] = static_cast<float>(value); });
@@ -103,26 +112,52 @@ class ArrayReader {
   }
 
   /// Number `index` of those that stand before the values.
-  std::uint64_t header_number(std::string_view bytes, std::size_t index) const {
+  std::uint64_t header_number(std::string_view bytes, std::size_t index, bool big_endian) const {
     const char* const at = bytes.data() + index * header_.header_bytes;
-    const bool swap = header_.big_endian;
-    return header_.header_bytes == 8 ? load_scalar<std::uint64_t>(at, swap)
-                                     : load_scalar<std::uint32_t>(at, swap);
+    return header_.header_bytes == 8 ? load_scalar<std::uint64_t>(at, big_endian)
+                                     : load_scalar<std::uint32_t>(at, big_endian);
+  }
+  std::uint64_t header_number(std::string_view bytes, std::size_t index) const {
+    return header_number(bytes, index, header_.big_endian);
   }
 
-  /// (`found` in floating point, so that no product of sizes can overflow)
-  void expect_size(double found) const {
-    if (found == static_cast<double>(value_bytes())) return;
-    fail(fmt::format("holds {:.0f} bytes; expected {} for {} samples of {} bytes", found,
-                     value_bytes(), num_samples_, size_of(type_)));
+  static std::string_view order_name(bool big_endian) {
+    return big_endian ? "BigEndian" : "LittleEndian";
+  }
+
+  /// `size_in(big_endian)`: bytes of all values as the numbers in front of them say it, read in
+  /// that order of bytes, in floating point, so that no product can overflow.
+  template <class Size>
+  void expect_size(Size&& size_in) const {
+    const auto expected = static_cast<double>(value_bytes());
+    const double found = size_in(header_.big_endian);
+    if (found == expected) return;
+    const bool swapped = size_in(!header_.big_endian) == expected;
+    fail(fmt::format("holds {:.0f} bytes; expected {} for {} samples of {} bytes, {}{}", found,
+                     value_bytes(), num_samples_, size_of(type_), samples_of_extent(),
+                     swapped ? fmt::format("; with byte_order=\"{}\" it holds these",
+                                           order_name(!header_.big_endian))
+                             : ""));
+  }
+
+  void warn_if_swapped(std::string_view bytes) const {
+    if (options_.warnings == nullptr || !looks_swapped(bytes, type_, header_.big_endian)) return;
+    options_.warnings->add(
+        Error(path_, array_.line,
+              fmt::format("array '{}' has values that make no sense with byte_order=\"{}\", but "
+                          "would in the other order of bytes",
+                          printable(array_.name), order_name(header_.big_endian)))
+            .what());
   }
 
   /// [number of bytes][bytes]
   void read_plain(UninitializedVector<float>& values) const {
     std::string storage;
     const std::size_t width = header_.header_bytes;
-    expect_size(static_cast<double>(header_number(first_bytes(width, storage), 0)));
+    const std::string_view size = first_bytes(width, storage);
+    expect_size([&](bool big) { return static_cast<double>(header_number(size, 0, big)); });
     const std::string_view bytes = first_bytes(width + value_bytes(), storage).substr(width);
+    warn_if_swapped(bytes);
     values.resize(num_samples_);
     convert_scalars(bytes, type_, header_.big_endian, values);
   }
@@ -148,6 +183,7 @@ class ArrayReader {
           if (result != Z_OK || size != bytes.size()) {
             fail(fmt::format("block {} of {} cannot be decompressed", i + 1, blocks.size()));
           }
+          if (i == 0) warn_if_swapped(bytes);
           convert_scalars(bytes, type_, header_.big_endian,
                           std::span(values).subspan(block.first, block.count));
         },
@@ -164,8 +200,12 @@ class ArrayReader {
     const std::uint64_t partial_bytes = header_number(bytes, 2);
     if (num_blocks == 0 || block_bytes == 0) fail("has no blocks; expected compressed values");
     const std::uint64_t num_whole = num_blocks - (partial_bytes > 0 ? 1 : 0);
-    expect_size(static_cast<double>(num_whole) * static_cast<double>(block_bytes) +
-                static_cast<double>(partial_bytes));
+    expect_size([&](bool big) {
+      const auto number = [&](std::size_t k) {
+        return static_cast<double>(header_number(bytes, k, big));
+      };
+      return (number(0) - (number(2) > 0 ? 1 : 0)) * number(1) + number(2);
+    });
     if (block_bytes % size_of(type_) != 0 || partial_bytes % size_of(type_) != 0) {
       fail(fmt::format("has blocks of {} bytes; expected whole values of {}", block_bytes,
                        size_of(type_)));
@@ -216,6 +256,7 @@ class ArrayReader {
   const VtiHeader& header_;
   const VtiArray& array_;
   ScalarType type_;
+  std::array<std::size_t, 3> dims_;
   std::uint64_t num_samples_;
   const ReadOptions& options_;
 };
@@ -249,8 +290,7 @@ std::vector<Grid> read_vti(const std::filesystem::path& path, const ReadOptions&
     }
     Grid grid = array.of_cells ? cell_lattice(header.points) : header.points;
     grid.name = array.name;
-    const std::uint64_t num_samples = count_samples(path, grid.dims);
-    grid.values = ArrayReader(path, header, array, *type, num_samples, options).read();
+    grid.values = ArrayReader(path, header, array, *type, grid.dims, options).read();
     grids.push_back(std::move(grid));
   }
   if (grids.empty()) {

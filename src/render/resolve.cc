@@ -1,8 +1,10 @@
 #include "render/resolve.h"
 
 #include <algorithm>
+#include <span>
 #include <variant>
 
+#include "field/probe.h"
 #include "render/view_profile.h"
 #include "scene/fit.h"
 
@@ -45,8 +47,18 @@ std::vector<Color> colors_of(const Isosurface& isosurface, const ParticleSet& pa
 std::vector<VisibleSphere> spheres_of_view(const ParticleSet& particles,
                                            const std::vector<FieldSource>& sources,
                                            const GeometrySource& geometry,
-                                           const std::vector<Field>& fields) {
-  std::vector<VisibleSphere> spheres = visible_spheres(particles, sources, geometry, fields);
+                                           const std::vector<Field>& fields,
+                                           const KernelSet& kernels) {
+  const auto values_at = [&kernels](std::size_t field, std::span<const Point3d> points) {
+    const std::vector<FieldSample> samples = probe(kernels, points);
+    std::vector<double> values(points.size());
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      values[i] = samples[i * kernels.fields.size() + field].value;
+    }
+    return values;
+  };
+  std::vector<VisibleSphere> spheres =
+      visible_spheres(particles, sources, geometry, fields, values_at);
   if (!spheres.empty()) return spheres;
   Bounds3d box = particles.bounds();
   if (box.empty()) box = {{-1, -1, -1}, {1, 1, 1}};
@@ -62,7 +74,7 @@ ResolvedScene resolve(const Scene& scene, const ParticleSet& particles,
   const double aspect = static_cast<double>(scene.render.width) / scene.render.height;
   std::vector<VisibleSphere> spheres;
   if (!(scene.eye && scene.target && scene.up)) {
-    spheres = spheres_of_view(particles, sources, geometry, fields);
+    spheres = spheres_of_view(particles, sources, geometry, fields, kernels);
   }
   resolved.camera = fit_camera(scene, spheres, aspect);
   // Without fields nothing is sampled.

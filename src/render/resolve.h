@@ -12,11 +12,12 @@
 namespace motes {
 
 /// What cameras are fitted to: all that is seen (visible_spheres()), or, where that is nothing, the
-/// ends of the particles' box.
+/// ends of the particles' box. `kernels` are those of the sources.
 std::vector<VisibleSphere> spheres_of_view(const ParticleSet& particles,
                                            const std::vector<FieldSource>& sources,
                                            const GeometrySource& geometry,
-                                           const std::vector<Field>& fields);
+                                           const std::vector<Field>& fields,
+                                           const KernelSet& kernels);
 
 /// Fills in what `scene` leaves open: camera from the fields and `geometry`, step size from the
 /// fields, transfer functions from what the view shows of them. `fields` are those that the scene

@@ -11,6 +11,7 @@
 #include "particles/elements.h"
 #include "particles/radii.h"
 #include "particles/selection.h"
+#include "scene/element_radii.h"
 #include "scene/grid_source.h"
 #include "scene/scene.h"
 
@@ -82,17 +83,16 @@ std::optional<ElementRadius> radius_table(const ParticleSet& particles,
   return std::nullopt;
 }
 
-/// The radii that a field gives, one a particle or one for all.
+/// The radii that a field gives, one a particle or one for all; those of particles that are not in
+/// `index` may be NaN.
 std::vector<float> own_radii(const ParticleSet& particles, const NumberOrProperty& radius,
-                             Warnings& warnings) {
+                             const std::vector<std::uint32_t>& index, Warnings& warnings,
+                             Progress* progress) {
   const auto table = radius_table(particles, radius);
   if (!table) return values_of(particles, radius, "radius");
-  if (particles.species.empty()) return {1};
-  const auto of_species = radii_of_species(particles, *table, warnings);
-  std::vector<float> radii(particles.size());
-  std::transform(particles.species.begin(), particles.species.end(), radii.begin(),
-                 [&](std::uint16_t species) { return of_species[species]; });
-  return radii;
+  std::vector<bool> wanted(particles.size());
+  for (const std::uint32_t i : index) wanted[i] = true;
+  return radii_by_element(particles, *table, wanted, warnings, progress);
 }
 
 /// Leaves out the particles that have no place or no kernel, with a warning for each reason.
@@ -228,12 +228,13 @@ void take_as_widths(FieldSource& source) {
 /// Adds radii and weights to a selected source, and leaves out the particles without a kernel.
 void complete_source(const ParticleSet& particles, const Field& field,
                      const std::vector<float>& default_radius, FieldSource& source,
-                     Warnings& warnings) {
+                     Warnings& warnings, Progress* progress) {
   // Particles with sizes of their own stand for a density: of mass, or else of number.
   const bool density = !field.radius && !field.weight && has_sizes(particles);
   const bool of_mass = density && particles.find_property("mass");
   const std::vector<float> own_radius =
-      field.radius ? own_radii(particles, *field.radius, warnings) : std::vector<float>();
+      field.radius ? own_radii(particles, *field.radius, source.index, warnings, progress)
+                   : std::vector<float>();
   const std::vector<float>& radius = field.radius ? own_radius : default_radius;
   const NumberOrProperty unit = of_mass ? NumberOrProperty("mass") : NumberOrProperty(1.0);
   const std::vector<float> weight = values_of(particles, field.weight.value_or(unit), "weight");
@@ -296,7 +297,7 @@ std::vector<FieldSource> make_field_sources(const ParticleSet& particles,
       shared_default_radii(particles, fields, sources, warnings, progress);
   for (std::size_t f = 0; f < fields.size(); ++f) {
     if (fields[f].grid) continue;
-    complete_source(particles, fields[f], default_radius, sources[f], warnings);
+    complete_source(particles, fields[f], default_radius, sources[f], warnings, progress);
   }
   color_grids(sources);
   return sources;

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
+#include <span>
 #include <vector>
 
 #include "core/vec.h"
@@ -16,9 +18,16 @@ struct VisibleSphere {
   double radius = 0;
 };
 
-/// The fields' particles, or some of them where there are very many, each as large as its Gaussian
-/// is easily seen; those that are far larger than is typical (in the voids of a cosmological box)
-/// are taken for smaller.
+/// A field's values at points; file's lengths, world axes.
+using FieldValuesAt =
+    std::function<std::vector<double>(std::size_t field, std::span<const Point3d>)>;
+
+/// The particles of fields that draw a volume, or some of them where there are very many, each as
+/// large as its Gaussian is easily seen; those that are far larger than is typical (in the voids of
+/// a cosmological box) are taken for smaller.
+/// Of fields with isosurfaces the particles, each as large as the surface of the level that lies
+/// farthest out may be there: with `values_at`, where phi, as high at the centre as the field and a
+/// quarter more, falls to the level; without it, and where kernels are of both signs, the support.
 /// With them the balls of `geometry`, whole, the ends of sticks that leave a periodic cell, and the
 /// corners of what grids have to be seen, as spheres of radius 0: magnitudes of a tenth of the
 /// level that encloses most of a field (enclosing_level()), or of its isosurfaces in `fields`,
@@ -26,7 +35,8 @@ struct VisibleSphere {
 std::vector<VisibleSphere> visible_spheres(const ParticleSet& particles,
                                            const std::vector<FieldSource>& sources,
                                            const GeometrySource& geometry = {},
-                                           const std::vector<Field>& fields = {});
+                                           const std::vector<Field>& fields = {},
+                                           const FieldValuesAt& values_at = {});
 
 /// The scene's camera; what it leaves open is fitted so that the spheres just fill an image of
 /// `aspect` = width / height. The view is oblique, mostly along their box's thinnest axis, so that

@@ -13,6 +13,7 @@
 namespace motes {
 namespace {
 
+constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double margin = 0.96;       // of the image, that the data may fill
 constexpr double default_fov = 45;    // degrees
 constexpr double nearly_cubic = 0.8;  // thinnest by largest side
@@ -137,14 +138,72 @@ std::array<Point3d, 8> visible_corners(const Grid& grid, bool draws_volume, doub
   return corners;
 }
 
+/// Whether field f does; those that are not there say nothing else.
+bool draws_volume(const std::vector<Field>& fields, std::size_t f) {
+  return f >= fields.size() || fields[f].draws_volume();
+}
+
 /// The least magnitude of the isosurfaces of field f; infinity if it has none.
 double least_level_of(const std::vector<Field>& fields, std::size_t f) {
-  double least = std::numeric_limits<double>::infinity();
+  double least = infinity;
   if (f >= fields.size()) return least;
   for (const Isosurface& isosurface : fields[f].isosurfaces) {
     least = std::min(least, std::abs(isosurface.value));
   }
   return least;
+}
+
+/// Calls use(i) with `particles_looked_at` or more of the numbers below `count`.
+template <class F>
+void for_some(std::size_t count, std::mt19937& random, F&& use) {
+  const std::size_t stride = 1 + count / particles_looked_at;
+  // (evenly many would beat with a lattice)
+  for (std::size_t begin = 0; begin < count; begin += stride) {
+    use(std::min(begin + random() % stride, count - 1));
+  }
+}
+
+/// Where a kernel that is `height` times a level high falls to it, in radii; its support where the
+/// shape may rise again.
+double distance_to_level(const Kernel& kernel, double height) {
+  double low = 0, high = kernel.support();
+  if (kernel.shape.type == KernelType::tabulated || height == infinity) return high;
+  if (!(height > 1)) return 0;
+  for (int step = 0; step < 40; ++step) {
+    const double middle = (low + high) / 2;
+    (height * evaluate(kernel, middle).value > 1 ? low : high) = middle;
+  }
+  return high;
+}
+
+/// Adds field f's particles with how far its isosurfaces may lie from them. If p is what a plane
+/// has of a point x at distance d, and all particles lie behind the plane, then Φ(x) <= shape(d)
+/// Φ(p) for Gaussians of one sigma, and about so for others. So the surface lies at most so far
+/// beyond a plane that touches the particles as shape(d) Φ takes to fall to the level, with Φ on
+/// the plane, which is not much more than at the particles next to it.
+void add_isosurfaces(const ParticleSet& particles, const FieldSource& source, const Field& field,
+                     std::size_t f, const FieldValuesAt& values_at, std::mt19937& random,
+                     std::vector<VisibleSphere>& spheres) {
+  constexpr double between = 1.25;  // more between particles than at them
+  std::vector<std::size_t> chosen;
+  std::vector<Point3d> centers;
+  for_some(source.index.size(), random, [&](std::size_t i) {
+    chosen.push_back(i);
+    centers.push_back(particles.position(source.index[i]));
+  });
+  const auto [least, most] = std::minmax_element(source.weight.begin(), source.weight.end());
+  const bool both_signs = *least < 0 && *most > 0;
+  std::vector<double> values(chosen.size(), infinity);
+  if (values_at && !both_signs) values = values_at(f, centers);
+  for (std::size_t k = 0; k < chosen.size(); ++k) {
+    double height = 0;  // over that of the level that lies farthest out
+    for (const Isosurface& isosurface : field.isosurfaces) {
+      const bool anywhere = std::isinf(values[k]) || isosurface.value == 0;
+      height = std::max(height, anywhere ? infinity : between * values[k] / isosurface.value);
+    }
+    const double radii = distance_to_level(source.kernel, height);
+    spheres.push_back({centers[k], radii * source.radius_of(chosen[k])});
+  }
 }
 
 /// Adds the corners of all grids, so often that they are no strays.
@@ -153,8 +212,8 @@ void add_corners(const std::vector<FieldSource>& sources, const std::vector<Fiel
   const std::size_t times = 1 + spheres.size() / stray_share;
   for (std::size_t f = 0; f < sources.size(); ++f) {
     if (!sources[f].grid) continue;
-    const bool draws_volume = f >= fields.size() || fields[f].draws_volume();
-    const auto corners = visible_corners(*sources[f].grid, draws_volume, least_level_of(fields, f));
+    const auto corners =
+        visible_corners(*sources[f].grid, draws_volume(fields, f), least_level_of(fields, f));
     for (std::size_t n = 0; n < times; ++n) {
       for (const Point3d& corner : corners) spheres.push_back({corner, 0});
     }
@@ -216,16 +275,6 @@ void limit_radii(std::vector<VisibleSphere>& spheres) {
   for (VisibleSphere& sphere : spheres) sphere.radius = std::min(sphere.radius, large * *middle);
 }
 
-/// Calls use(i) with `particles_looked_at` or more of the numbers below `count`.
-template <class F>
-void for_some(std::size_t count, std::mt19937& random, F&& use) {
-  const std::size_t stride = 1 + count / particles_looked_at;
-  // (evenly many would beat with a lattice)
-  for (std::size_t begin = 0; begin < count; begin += stride) {
-    use(std::min(begin + random() % stride, count - 1));
-  }
-}
-
 /// Adds balls, and the ends of half-bonds that leave the cell; other sticks lie between balls that
 /// are as wide.
 void add_geometry(const ParticleSet& particles, const GeometrySource& geometry,
@@ -251,10 +300,13 @@ void add_geometry(const ParticleSet& particles, const GeometrySource& geometry,
 std::vector<VisibleSphere> visible_spheres(const ParticleSet& particles,
                                            const std::vector<FieldSource>& sources,
                                            const GeometrySource& geometry,
-                                           const std::vector<Field>& fields) {
+                                           const std::vector<Field>& fields,
+                                           const FieldValuesAt& values_at) {
   std::vector<VisibleSphere> spheres;
   std::mt19937 random(1);
-  for (const FieldSource& source : sources) {
+  for (std::size_t f = 0; f < sources.size(); ++f) {
+    const FieldSource& source = sources[f];
+    if (!draws_volume(fields, f)) continue;
     const double widths = source.kernel.support() / source.kernel.standard_deviation();
     const double extent = std::min(widths, easily_seen);
     for_some(source.index.size(), random, [&](std::size_t i) {
@@ -262,6 +314,10 @@ std::vector<VisibleSphere> visible_spheres(const ParticleSet& particles,
     });
   }
   limit_radii(spheres);
+  for (std::size_t f = 0; f < std::min(fields.size(), sources.size()); ++f) {
+    if (sources[f].grid || fields[f].isosurfaces.empty()) continue;
+    add_isosurfaces(particles, sources[f], fields[f], f, values_at, random, spheres);
+  }
   add_geometry(particles, geometry, random, spheres);
   add_corners(sources, fields, spheres);
   // Nothing is drawn: the place where something could be.

@@ -53,8 +53,8 @@ struct GeometrySource {
   /// 0xrrggbb, one an index. See by_field().
   std::vector<std::uint32_t> srgb;
   std::vector<Bond> bonds;  ///< between particles that are drawn
-  /// One a particle: whether bonds by distance are still to be found for it, through the tree;
-  /// empty: none are.
+  /// One a particle: whether it has bonds by distance, which are found when there is a tree; empty
+  /// where bonds are the file's.
   std::vector<bool> bonds_among;
   float stick_radius = 0;  ///< file's length
 
@@ -68,19 +68,15 @@ inline bool by_field(std::uint32_t srgb) { return (srgb & for_want_of_field) != 
 /// What `geometry` draws of `particles`: of several balls for a particle the last. Where sticks
 /// meet there is a ball of their radius at least. Particles whose position is not finite or whose
 /// radius is no number are left out, with a warning that counts them; radii of 0 are no balls.
-/// Species that are no elements have the mean radius of those that are, with a warning, or 1 if
-/// there are none. Throws Error, which names the key ("geometry[0].radius: what"), for unknown
+/// Radii from a table are those of radii_by_element(), which reports `progress` where neighbours
+/// have to be found. Throws Error, which names the key ("geometry[0].radius: what"), for unknown
 /// species and properties and for what selects no particle.
 GeometrySource make_geometry_source(const ParticleSet& particles,
-                                    const std::vector<Geometry>& geometry, Warnings& warnings);
+                                    const std::vector<Geometry>& geometry, Warnings& warnings,
+                                    Progress* progress = nullptr);
 
 /// The colour of a species that is no element: colours that are easily told apart.
 std::uint32_t other_species_color(std::size_t species);
-
-/// One for each species that the particles have; those that are no elements have the mean of the
-/// others, with a warning.
-std::vector<float> radii_of_species(const ParticleSet& particles, ElementRadius table,
-                                    Warnings& warnings);
 
 /// 0xrrggbb, one for each species that the particles have.
 std::vector<std::uint32_t> colors_of_species(const ParticleSet& particles, ColorBy by);

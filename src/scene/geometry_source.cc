@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <string_view>
 #include <utility>
@@ -10,6 +11,7 @@
 #include "core/error.h"
 #include "particles/bonds.h"
 #include "particles/elements.h"
+#include "scene/element_radii.h"
 #include "scene/geometry.h"
 #include "scene/transfer_function.h"
 
@@ -21,21 +23,29 @@ std::uint32_t element_color(const Element& element) {
   return std::uint32_t{c[0]} << 16 | std::uint32_t{c[1]} << 8 | c[2];
 }
 
+/// Whether each of `count` particles is in `index`.
+std::vector<bool> flags_of(const std::vector<std::uint32_t>& index, std::size_t count) {
+  std::vector<bool> flags(count);
+  for (const std::uint32_t i : index) flags[i] = true;
+  return flags;
+}
+
 /// Radii of the particles in `index`.
 std::vector<float> radii_of(const ParticleSet& particles, const Geometry& item,
-                            const std::vector<std::uint32_t>& index, Warnings& warnings) {
-  std::vector<float> radii(index.size(), 1);
+                            const std::vector<std::uint32_t>& index, Warnings& warnings,
+                            Progress* progress) {
+  std::vector<float> radii(index.size());
   if (const double* number = std::get_if<double>(&item.radius)) {
     std::fill(radii.begin(), radii.end(), static_cast<float>(*number));
   } else if (const auto* name = std::get_if<std::string>(&item.radius)) {
     const Property& property = property_named(particles, *name);
     std::transform(index.begin(), index.end(), radii.begin(),
                    [&](std::uint32_t i) { return property.values[i]; });
-  } else if (!particles.species.empty()) {
-    const auto of_species =
-        radii_of_species(particles, std::get<ElementRadius>(item.radius), warnings);
+  } else {
+    const auto by_element = radii_by_element(particles, std::get<ElementRadius>(item.radius),
+                                             flags_of(index, particles.size()), warnings, progress);
     std::transform(index.begin(), index.end(), radii.begin(),
-                   [&](std::uint32_t i) { return of_species[particles.species[i]]; });
+                   [&](std::uint32_t i) { return by_element[by_element.size() == 1 ? 0 : i]; });
   }
   for (float& radius : radii) radius *= static_cast<float>(item.scale);
   return radii;
@@ -98,14 +108,18 @@ void take_bonds(const ParticleSet& particles, BondSource from,
   if (from == BondSource::file && particles.bonds.empty()) {
     throw Error("the file has none; expected \"distance\", or a file with bonds");
   }
-  std::vector<bool> selected(particles.size());
-  for (const std::uint32_t i : index) selected[i] = true;
+  std::vector<bool> selected = flags_of(index, particles.size());
   if (from == BondSource::distance || particles.bonds.empty()) {
     source.bonds_among = std::move(selected);
     return;
   }
-  for (const Bond& bond : file_bonds(particles, warnings)) {
-    if (selected[bond.first] && selected[bond.second]) source.bonds.push_back(bond);
+  const std::vector<Bond> bonds = file_bonds(particles, warnings);
+  std::copy_if(bonds.begin(), bonds.end(), std::back_inserter(source.bonds),
+               [&](const Bond& bond) { return selected[bond.first] && selected[bond.second]; });
+  if (source.bonds.empty()) {
+    warnings.add(
+        fmt::format("sticks: none of the {} bonds is between two particles that are both selected",
+                    bonds.size()));
   }
 }
 
@@ -129,13 +143,14 @@ auto with_key(std::string_view key, Get&& get) {
 }
 
 void add_item(const ParticleSet& particles, const Geometry& item, Drawn& drawn,
-              GeometrySource& source, Warnings& warnings) {
+              GeometrySource& source, Warnings& warnings, Progress* progress) {
   const auto index = with_key("select", [&] { return select_particles(particles, item.select); });
   if (index.empty()) throw Error("select: takes none of the particles");
   const auto colors = with_key("color", [&] { return colors_of(particles, item, index); });
   std::vector<float> radii;
   if (item.type == Geometry::Type::spheres) {
-    radii = with_key("radius", [&] { return radii_of(particles, item, index, warnings); });
+    radii =
+        with_key("radius", [&] { return radii_of(particles, item, index, warnings, progress); });
   } else {
     source.stick_radius = static_cast<float>(std::get<double>(item.radius));
     radii.assign(index.size(), source.stick_radius);
@@ -186,38 +201,15 @@ std::vector<std::uint32_t> colors_of_species(const ParticleSet& particles, Color
   return colors;
 }
 
-std::vector<float> radii_of_species(const ParticleSet& particles, ElementRadius table,
-                                    Warnings& warnings) {
-  std::vector<float> radii;
-  double sum = 0;
-  int known = 0;
-  for (const std::string& name : particles.species_names) {
-    const Element* element = find_element(name);
-    radii.push_back(std::numeric_limits<float>::quiet_NaN());
-    if (element == nullptr) continue;
-    radii.back() = table == ElementRadius::covalent ? element->covalent_radius
-                                                    : van_der_waals_radius(*element);
-    sum += radii.back();
-    ++known;
-  }
-  const float other = known == 0 ? 1 : static_cast<float>(sum / known);
-  for (std::size_t s = 0; s < radii.size(); ++s) {
-    if (!std::isnan(radii[s])) continue;
-    radii[s] = other;
-    warnings.add(fmt::format("species '{}' is no element: it has the radius {:.3g}",
-                             printable(particles.species_names[s]), other));
-  }
-  return radii;
-}
-
 GeometrySource make_geometry_source(const ParticleSet& particles,
-                                    const std::vector<Geometry>& geometry, Warnings& warnings) {
+                                    const std::vector<Geometry>& geometry, Warnings& warnings,
+                                    Progress* progress) {
   GeometrySource source;
   if (geometry.empty()) return source;
   Drawn drawn(particles.size());
   for (std::size_t k = 0; k < geometry.size(); ++k) {
     try {
-      add_item(particles, geometry[k], drawn, source, warnings);
+      add_item(particles, geometry[k], drawn, source, warnings, progress);
     } catch (const Error& error) {
       throw Error(fmt::format("geometry[{}].{}", k, error.what()));
     }

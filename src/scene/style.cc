@@ -38,10 +38,28 @@ Field quick_surf() {
   return field;
 }
 
+/// What other programs call styles, or people at first.
+constexpr struct {
+  std::string_view name, meant;
+} other_names[] = {{"balls", "'spheres' or 'ball-and-stick'"},
+                   {"vdw", "'spheres'"},
+                   {"sticks", "'ball-and-stick'"},
+                   {"licorice", "'ball-and-stick'"},
+                   {"cpk", "'ball-and-stick'"},
+                   {"isosurface", "'surface'"}};
+
+Error unknown_style(std::string_view name) {
+  for (const auto& other : other_names) {
+    if (name != other.name) continue;
+    return Error(fmt::format("unknown style '{}'; did you mean {}?", name, other.meant));
+  }
+  return unknown_name("style", name, style_names());
+}
+
 const Style& find_style(std::string_view name) {
   const auto* const found = std::find_if(std::begin(styles), std::end(styles),
                                          [&](const Style& style) { return style.name == name; });
-  if (found == std::end(styles)) throw unknown_name("style", name, style_names());
+  if (found == std::end(styles)) throw unknown_style(name);
   return *found;
 }
 

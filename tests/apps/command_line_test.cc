@@ -341,6 +341,20 @@ TEST_F(CommandLine, ACameraThatLooksAtNothingGivesAnEmptyPicture) {
   for (const float v : pixels("a.npy")) EXPECT_EQ(v, 0);
 }
 
+TEST_F(CommandLine, ALevelThatIsNotReachedIsNamedWithTheFieldsRange) {
+  workspace_.write("s.json", R"({"version": 1, "data": {"path": "a.xyz"}, "fields":
+      [{"name": "silicon", "radius": 1, "weight": 2, "select": {"species": "Si"},
+        "isosurfaces": [{"value": 1}, {"value": 7}]}]})");
+  EXPECT_EQ(run("render s.json -o a.npy --size 16x16").err, "") << "one of them is seen";
+  workspace_.write("s.json", R"({"version": 1, "data": {"path": "a.xyz"}, "fields":
+      [{"name": "silicon", "radius": 1, "weight": 2, "select": {"species": "Si"},
+        "isosurfaces": [{"value": 7}, {"value": -1}]}]})");
+  const std::string range = "; at its particles it goes from 0 to 2\n";
+  EXPECT_EQ(run("render s.json -o a.npy --size 16x16").err,
+            "motes: warning: the field 'silicon' does not reach its isosurface at 7" + range +
+                "motes: warning: the field 'silicon' does not reach its isosurface at -1" + range);
+}
+
 TEST_F(CommandLine, APictureThatIsAllButEmptyIsExplained) {
   const auto warning = [this](const std::string& options) {
     const Outcome outcome = run("render a.xyz -o a.png --size 16x16 " + options);
@@ -355,6 +369,10 @@ TEST_F(CommandLine, APictureThatIsAllButEmptyIsExplained) {
                                     "extinction in the transfer function.*\n"));
   EXPECT_THAT(warning("--style spheres --clip-plane 1,0,0,-1"),
               HasSubstr("motes: warning: none of the balls and sticks in view is seen"));
+  for (const std::string wide : {"--fov 179.99", "--style spheres --orthographic 1e5"}) {
+    EXPECT_THAT(warning(wide),
+                HasSubstr("motes: warning: what is in view is no larger than a pixel"));
+  }
   const std::string away = " --eye 0,0,50 --target 0,0,99";
   EXPECT_THAT(warning("--transfer-function t.json" + away), HasSubstr("nothing is in view"));
   EXPECT_THAT(warning("--orthographic 5 --target 0,50,0 --eye 0,50,9"),

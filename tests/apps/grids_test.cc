@@ -14,11 +14,11 @@ namespace {
 
 using testing::HasSubstr;
 
-/// A cube file of a hydrogen molecule in bohr, n^3 samples one apart: x + 2 y + 3 z in steps.
+/// A cube file of hydrogen fluoride in bohr, n^3 samples one apart: x + 2 y + 3 z in steps.
 std::string cube(int n) {
   std::string text = fmt::format(
       "title\ncomment\n 2 0 0 0\n {0} 1 0 0\n {0} 0 1 0\n {0} 0 0 1\n"
-      "1 0 2 2 2\n1 0 2 2 3.4\n",
+      "1 0 2 2 2\n9 0 2 2 3.7\n",
       n);
   for (int x = 0; x < n; ++x) {
     for (int y = 0; y < n; ++y) {
@@ -44,7 +44,7 @@ std::string repeated(const std::string& value, int count) {
 class Grids : public CommandLine {
  protected:
   Grids() {
-    workspace_.write("h2.cube", cube(6));
+    workspace_.write("hf.cube", cube(6));
     workspace_.write("heat.nrrd", nrrd(repeated("0 1 4", 9)));
     workspace_.write("p.csv", "x,y,z\n0.5,1,1.5\n99,0,0\n");
   }
@@ -63,7 +63,7 @@ class Grids : public CommandLine {
 };
 
 TEST_F(Grids, HaveAPictureWithoutOptions) {
-  for (const std::string file : {"h2.cube", "heat.nrrd"}) {
+  for (const std::string file : {"hf.cube", "heat.nrrd"}) {
     for (const std::string name : {"trilinear", "tricubic", "tricubic_smoothing"}) {
       succeed(fmt::format("render {} -o a.npy --size 24x24 --interpolation {}", file, name));
       EXPECT_GT(largest_opacity("a.npy"), 0.5) << file;
@@ -72,8 +72,8 @@ TEST_F(Grids, HaveAPictureWithoutOptions) {
 }
 
 TEST_F(Grids, AtomsOfTheFileAreInThePicture) {
-  succeed("render h2.cube -o a.npy --size 24x24 --save-scene both.json");
-  succeed("render h2.cube -o b.npy --size 24x24 --style volume --save-scene grid.json");
+  succeed("render hf.cube -o a.npy --size 24x24 --save-scene both.json");
+  succeed("render hf.cube -o b.npy --size 24x24 --style volume --save-scene grid.json");
   EXPECT_NE(pixels("a.npy"), pixels("b.npy"));
   auto scene = nlohmann::json::parse(workspace_.read("both.json"));
   EXPECT_EQ(scene["fields"][0]["name"], "value");
@@ -82,14 +82,14 @@ TEST_F(Grids, AtomsOfTheFileAreInThePicture) {
   EXPECT_FALSE(nlohmann::json::parse(workspace_.read("grid.json")).contains("geometry"));
   succeed("render both.json -o c.npy");
   EXPECT_EQ(pixels("c.npy"), pixels("a.npy"));
-  succeed("render h2.cube -o d.npy --size 24x24 --style ball-and-stick");
+  succeed("render hf.cube -o d.npy --size 24x24 --style ball-and-stick");
   EXPECT_EQ(largest_opacity("d.npy"), 1);
 }
 
 TEST_F(Grids, AreWhatAStyleShowsOfTheirFile) {
-  workspace_.write("s.json", R"({"version": 1, "data": {"path": "h2.cube"}, "style": "volume"})");
+  workspace_.write("s.json", R"({"version": 1, "data": {"path": "hf.cube"}, "style": "volume"})");
   succeed("render s.json -o a.npy --size 24x24");
-  succeed("render h2.cube -o b.npy --size 24x24 --style volume");
+  succeed("render hf.cube -o b.npy --size 24x24 --style volume");
   EXPECT_EQ(pixels("a.npy"), pixels("b.npy"));
 }
 
@@ -113,9 +113,9 @@ TEST_F(Grids, HaveSurfacesAtFittedLevels) {
   EXPECT_EQ(scene["fields"][0]["isosurfaces"][1]["value"], -0.5);
 
   // In a scene file too, and with the atoms where there are some.
-  workspace_.write("s.json", R"({"version": 1, "data": {"path": "h2.cube"}, "style": "surface"})");
+  workspace_.write("s.json", R"({"version": 1, "data": {"path": "hf.cube"}, "style": "surface"})");
   succeed("render s.json -o d.npy --size 24x24");
-  succeed("render h2.cube -o e.npy --size 24x24 --style surface --save-scene e.json");
+  succeed("render hf.cube -o e.npy --size 24x24 --style surface --save-scene e.json");
   EXPECT_EQ(pixels("d.npy"), pixels("e.npy"));
   scene = nlohmann::json::parse(workspace_.read("e.json"));
   EXPECT_TRUE(scene["fields"][0].contains("grid"));
@@ -140,7 +140,7 @@ TEST_F(Grids, LookTheSameInEveryEngineWhereverTheCameraIs) {
     for (const std::string style : {"volume", "surface", "volume+balls", "ball-and-stick"}) {
       for (const std::string engine : {"sweep", "coherent", "direct", "cells"}) {
         succeed(
-            fmt::format("render h2.cube -o {}.npy --size 16x16 --fov 80 {} --style {} --engine {}",
+            fmt::format("render hf.cube -o {}.npy --size 16x16 --fov 80 {} --style {} --engine {}",
                         engine, view, style, engine));
         EXPECT_EQ(pixels(engine + ".npy"), pixels("sweep.npy")) << view << style << engine;
       }
@@ -153,7 +153,7 @@ TEST_F(Grids, LookTheSameInEveryEngineWhereverTheCameraIs) {
 TEST_F(Grids, OutOfViewAreToldWithTheirAtoms) {
   for (const std::string style : {"volume", "surface", "volume+balls", "ball-and-stick"}) {
     EXPECT_THAT(
-        run("render h2.cube -o a.png --size 16x16 --eye 0,0,20 --target 0,0,40 --style " + style)
+        run("render hf.cube -o a.png --size 16x16 --eye 0,0,20 --target 0,0,40 --style " + style)
             .err,
         HasSubstr("motes: warning: nothing is in view"))
         << style;
@@ -204,7 +204,7 @@ TEST_F(Grids, ShareAPictureWithParticles) {
 
 TEST_F(Grids, AreProbed) {
   // Steps of 1 bohr = 0.529177 angstrom; 0.5, 1, 1.5 angstrom.
-  const Outcome outcome = run("probe h2.cube --points p.csv --interpolation tricubic");
+  const Outcome outcome = run("probe hf.cube --points p.csv --interpolation tricubic");
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   std::istringstream lines(outcome.out);
   std::string line;
@@ -225,7 +225,7 @@ TEST_F(Grids, AreProbed) {
 }
 
 TEST_F(Grids, AreDescribed) {
-  std::string out = run("info h2.cube").out;
+  std::string out = run("info hf.cube").out;
   EXPECT_THAT(out, testing::ContainsRegex("format +cube\n"));
   EXPECT_THAT(out, testing::ContainsRegex("grid +value +0 to 30\n"));
   EXPECT_THAT(out, HasSubstr("6 x 6 x 6 samples, 0.529177 x 0.529177 x 0.529177 apart\n"));
@@ -248,6 +248,15 @@ TEST_F(Grids, OfOneValueAreDrawn) {
   workspace_.write("zero.nrrd", nrrd(repeated("0", 27)));
   EXPECT_THAT(run("render zero.nrrd -o a.npy --size 24x24").err,
               HasSubstr("motes: warning: the fields in view are too transparent"));
+}
+
+TEST_F(Grids, LevelsThatAreNotReachedAreTold) {
+  workspace_.write("s.json", R"({"version": 1, "fields": [{"name": "heat", "grid": "heat.nrrd",
+      "isosurfaces": [{"value": 1}, {"value": 9}]}]})");
+  EXPECT_EQ(
+      run("render s.json -o a.npy --size 24x24").err,
+      "motes: warning: the field 'heat' does not reach its isosurface at 9; its values go from "
+      "0 to 4\n");
 }
 
 TEST_F(Grids, MistakesOfTheSceneAreTold) {

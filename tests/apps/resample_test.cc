@@ -111,6 +111,14 @@ TEST_F(ResampleCommand, AWrongCommandLineIsStatus2) {
   EXPECT_FALSE(workspace_.exists("a.vti"));
 }
 
+TEST_F(ResampleCommand, WarnsOfVoxelsThatShowNothing) {
+  EXPECT_EQ(run("resample a.xyz -o a.vti").err, "");
+  const std::string err = run("resample a.xyz -o a.vti --voxel-size 1000").err;
+  EXPECT_THAT(err, HasSubstr("motes: warning: the grid is a single voxel of 1000, for the volume"));
+  EXPECT_THAT(err, HasSubstr("motes: warning: all 2 x 2 x 2 samples of the field 'all' are 0: they "
+                             "are 1000 apart, its kernels"));
+}
+
 TEST_F(ResampleCommand, FailsWithoutHarm) {
   workspace_.write("a.vti", "old");
   workspace_.write("same.json", R"({"version": 1, "data": {"path": "a.xyz"},

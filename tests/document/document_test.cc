@@ -186,7 +186,7 @@ TEST_F(DocumentTest, SaysWhyThereAreNoSticks) {
   EXPECT_THAT(warnings_.lines(), IsEmpty());  // among atoms so dense there are bonds
   std::ofstream(path()) << "2\n\nSi 0 0 0\nSi 5 0 0\n";
   open(some);
-  EXPECT_THAT(warnings_.lines(), ElementsAre(HasSubstr("no two of the atoms are as near")));
+  EXPECT_THAT(warnings_.lines(), ElementsAre(HasSubstr("none by distance")));
   std::ofstream(path()) << "2\n\nclay 0 0 0\nclay 1 0 0\n";
   open(some);
   EXPECT_THAT(warnings_.lines(),

@@ -67,6 +67,33 @@ TEST(Nrrd, ReadsEveryTypeInEveryEncoding) {
   }
 }
 
+TEST(Nrrd, WarnsOfTheOtherOrderOfBytes) {
+  const auto warnings_of = [](const std::string& type, const std::string& bytes,
+                              const std::string& encoding) {
+    Warnings warnings;
+    const std::string stored = encoding == "gzip" ? compress(bytes, "gzip") : bytes;
+    EXPECT_EQ(grid_error("a.nrrd", header(type, encoding) + "\n" + stored, &warnings), "");
+    return warnings.lines();
+  };
+  const std::vector<double> mask{0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1, 0};
+  const std::vector<double> tiny(12, 1e-30), huge(12, 1e38);
+  for (const std::string encoding : {"raw", "gzip"}) {
+    for (const auto& values : {numbers, mask}) {
+      EXPECT_THAT(warnings_of("float", scalar_bytes<float>(values, true), encoding),
+                  ElementsAre(HasSubstr("a.nrrd: has values that make no sense with 'endian: "
+                                        "little', but would with 'endian: big'")));
+      EXPECT_THAT(warnings_of("double", scalar_bytes<double>(values, true), encoding).size(), 1);
+      EXPECT_THAT(warnings_of("float", scalar_bytes<float>(values, false), encoding),
+                  ElementsAre());
+    }
+    // What is odd either way, or not real, is left alone.
+    EXPECT_THAT(warnings_of("float", scalar_bytes<float>(tiny, false), encoding), ElementsAre());
+    EXPECT_THAT(warnings_of("float", scalar_bytes<float>(huge, false), encoding), ElementsAre());
+    EXPECT_THAT(warnings_of("short", scalar_bytes<std::int16_t>(numbers, true), encoding),
+                ElementsAre());
+  }
+}
+
 TEST(Nrrd, PlacesSamplesInSpace) {
   const Grid grid = grids_of("a.nrrd", header("float", "raw") +
                                            "space dimension: 3\nspace directions: (1,2,0) (0, 3, 4)"

@@ -264,14 +264,17 @@ INSTANTIATE_TEST_SUITE_P(
                 ascii_file("WholeExtent=\"0 1 0 2 0 1\" Spacing=\"1 0 1\"",
                            "Extent=\"0 1 0 2 0 1\"", ""),
                 "a.vti: has steps between its samples that span no volume"},
-        BadText{"FewNumbers",
-                ascii_file("WholeExtent=\"0 1 0 2 0 2\"", "Extent=\"0 1 0 2 0 2\"",
-                           "<PointData>" + ascii_array + "</PointData>"),
-                "a.vti:7: the file ends after 12 of 18 values"},
-        BadText{"ManyNumbers",
-                ascii_file("WholeExtent=\"0 1 0 2 0 0\"", "Extent=\"0 1 0 2 0 0\"",
-                           "<PointData>" + ascii_array + "</PointData>"),
-                "a.vti:6: expected the end of the file after 6 values, found '6'"},
+        BadText{
+            "FewNumbers",
+            ascii_file("WholeExtent=\"0 1 0 2 0 2\"", "Extent=\"0 1 0 2 0 2\"",
+                       "<PointData>" + ascii_array + "</PointData>"),
+            "a.vti:7: array 'f < 1' of 2 x 3 x 3 points by the Extent ends after 12 of 18 values"},
+        BadText{
+            "ManyNumbers",
+            ascii_file("WholeExtent=\"0 1 0 2 0 0\"", "Extent=\"0 1 0 2 0 0\"",
+                       "<PointData>" + ascii_array + "</PointData>"),
+            "a.vti:6: expected the end of array 'f < 1' of 2 x 3 x 1 points by the Extent after 6 "
+            "values, found '6'"},
         BadText{"NoOffset",
                 ascii_file("WholeExtent=\"0 1 0 2 0 1\"", "Extent=\"0 1 0 2 0 1\"",
                            "<PointData><DataArray type=\"Int8\" format=\"appended\"/></PointData>"),
@@ -282,12 +285,16 @@ INSTANTIATE_TEST_SUITE_P(
                        "<PointData><DataArray type=\"Int8\" format=\"appended\" "
                        "offset=\"9\"/></PointData>"),
             "a.vti:4: array 'value': begins at byte 9 of the appended data; expected at most 0"},
-        BadText{"OtherSize",
-                appended_bytes(header_numbers({44}, false, 4) + std::string(44, ' '), false),
-                "array 'f': holds 44 bytes; expected 48 for 12 samples of 4 bytes"},
-        BadText{"WrongEndian",
-                appended_bytes(header_numbers({48}, true, 4) + std::string(48, ' '), false),
-                "array 'f': holds 805306368 bytes; expected 48"},
+        BadText{
+            "OtherSize",
+            appended_bytes(header_numbers({44}, false, 4) + std::string(44, ' '), false),
+            "array 'f': holds 44 bytes; expected 48 for 12 samples of 4 bytes, 2 x 3 x 2 points by "
+            "the Extent"},
+        BadText{
+            "WrongEndian",
+            appended_bytes(header_numbers({48}, true, 4) + std::string(48, ' '), false),
+            "array 'f': holds 805306368 bytes; expected 48 for 12 samples of 4 bytes, 2 x 3 x 2 "
+            "points by the Extent; with byte_order=\"BigEndian\" it holds these"},
         BadText{"Cut", appended_bytes(header_numbers({48}, false, 4), false),
                 "array 'f': ends after 29 of 52 bytes"},
         BadText{"Junk", inline_file({.base64 = true}, "Float32", "") + "x",
@@ -313,6 +320,26 @@ INSTANTIATE_TEST_SUITE_P(
             blocks({1, 48, 0, static_cast<double>(zeros.size())}, deflated(std::string(47, '\0'))),
             "array 'f': block 1 of 1 cannot be decompressed"}),
     [](const auto& bad) { return bad.param.name; });
+
+// Values in another order of bytes than the sizes in front of them.
+TEST(Vti, WarnsOfValuesInTheOtherOrderOfBytes) {
+  for (const std::size_t block_bytes : {std::size_t{0}, std::size_t{16}}) {
+    const Storage storage{.block_bytes = block_bytes, .base64 = true};
+    const auto warnings_of = [&](bool big_endian) {
+      Warnings warnings;
+      EXPECT_EQ(
+          grid_error("a.vti",
+                     inline_file(storage, "Float32", scalar_bytes<float>(numbers, big_endian)),
+                     &warnings),
+          "");
+      return warnings.lines();
+    };
+    EXPECT_THAT(warnings_of(false), ElementsAre());
+    EXPECT_THAT(warnings_of(true),
+                ElementsAre(HasSubstr("a.vti:5: array 'f' has values that make no sense with "
+                                      "byte_order=\"LittleEndian\"")));
+  }
+}
 
 // A million of bytes cannot come from a few.
 TEST(Vti, TakesNoMemoryForWhatCannotBeThere) {

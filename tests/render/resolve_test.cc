@@ -3,10 +3,13 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
 
+#include <cmath>
 #include <memory>
 
 #include "core/error.h"
+#include "field/probe.h"
 #include "scene/fit.h"
 #include "support/particles_at.h"
 
@@ -126,6 +129,47 @@ TEST_F(Resolve, ColoursIsosurfacesOfGridsBySign) {
               testing::ElementsAre(colors.own, colors.own));
   EXPECT_THAT(colors_at({{0.5, {}, 1}, {-0.5, {}, 1}}),
               testing::ElementsAre(colors.positive, colors.negative));
+}
+
+/// Whether p is in the image of the camera.
+bool is_seen(const Camera& camera, double aspect, const Point3d& p) {
+  const CameraAxes axes = camera_axes(camera);
+  const Vector3d v = p - camera.eye;
+  const double half = half_height(camera) * dot(v, axes.forward);
+  return std::abs(dot(v, axes.y)) <= half && std::abs(dot(v, axes.x)) <= aspect * half;
+}
+
+// Wherever a field of overlapping kernels exceeds the lowest level, and not far beyond.
+RC_GTEST_PROP(ResolveIsosurfaces, FitTheCameraToTheSurfaceFarthestOut, ()) {
+  const auto number = [](int low, int high) { return *rc::gen::inRange(low, high) / 16.0; };
+  std::vector<Point3d> points;
+  for (int n = *rc::gen::inRange(1, 40); n > 0; --n) {
+    points.push_back({number(-32, 32), number(-32, 32), number(-32, 32)});
+  }
+  const ParticleSet particles = particles_at(points);
+  const std::vector<FieldSource> sources{field_of_all(particles, 1, 1, {.support_factor = 5})};
+  const KernelSet kernels = build_kernel_set(particles, sources);
+  const double level = std::pow(10, -number(5, 60));
+  Field field;
+  field.isosurfaces = {{level, {}, 1}, {3 * level, {}, 1}};
+  const double aspect = 1.5;
+  Scene scene;
+  scene.render.width = 300;
+  scene.render.height = 200;
+  const Camera camera = resolve(scene, particles, {field}, sources, {}, kernels).camera;
+  double largest = 0;
+  for (const Point3d& center : points) {
+    // Around each particle, to where all kernels end.
+    for (int k = 0; k < 2000; ++k) {
+      const double z = (k + 0.5) / 1000 - 1, turn = 2.39996 * k, across = std::sqrt(1 - z * z);
+      const Vector3d direction{across * std::cos(turn), across * std::sin(turn), z};
+      const Point3d p = center + (k % 25) * 0.2 * direction;
+      if (probe(kernels, std::vector{p})[0].value <= level) continue;
+      RC_ASSERT(is_seen(camera, aspect, p));
+      largest = std::max(largest, length(p - camera.target));
+    }
+  }
+  RC_ASSERT(largest > 0.3 * half_height(camera) * length(camera.eye - camera.target));
 }
 
 TEST_F(Resolve, RefusesACameraThatCannotBe) {

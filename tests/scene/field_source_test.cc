@@ -142,6 +142,11 @@ TEST(MakeFieldSources, TakesTheElementsRadiiByName) {
   particles.properties.push_back({"covalent", {4, 5, 6, 7}});
   field.radius = "covalent";
   EXPECT_THAT(make_field_source(particles, field, {}, warnings).radius, ElementsAre(4, 5, 6, 7));
+  // Without elements there are only the particles' own.
+  particles = silica();
+  particles.species_names.assign(particles.species_names.size(), "gas");
+  particles.properties = {{"radius", {1, 2, 3, 4}}};
+  EXPECT_THAT(make_field_source(particles, field, {}, warnings).radius, ElementsAre(1, 2, 3, 4));
 }
 
 TEST(MakeFieldSources, TakesADensityWhereParticlesHaveASize) {

@@ -6,6 +6,7 @@
 #include <rapidcheck/gtest.h>
 
 #include <cmath>
+#include <span>
 
 #include "core/error.h"
 #include "scene/fit_levels.h"
@@ -288,6 +289,38 @@ TEST(VisibleSpheres, HoldAllOfAGridThatGoesOn) {
   grid.periodic = true;
   source.grid = std::make_shared<const Grid>(std::move(grid));
   EXPECT_EQ(farthest_x(visible_spheres({}, {source})), 20.5);
+}
+
+TEST(VisibleSpheres, ReachAsFarAsIsosurfacesMay) {
+  ParticleSet particles;
+  for (auto* axis : {&particles.x, &particles.y, &particles.z}) *axis = {0};
+  FieldSource source;
+  source.index = {0};
+  source.radius = {2};
+  source.weight = {3};
+  source.kernel.support_factor = 4;
+  const auto radius_at = [&](const std::vector<double>& levels, bool looks) {
+    Field field;
+    for (const double level : levels) field.isosurfaces.push_back({level, {}, 1});
+    const auto values_at = [](std::size_t f, std::span<const Point3d> points) {
+      EXPECT_EQ(f, 0U);
+      return std::vector<double>(points.size(), 3);
+    };
+    const auto spheres =
+        visible_spheres(particles, {source}, {}, {field}, looks ? values_at : FieldValuesAt());
+    EXPECT_EQ(spheres.size(), 1U);
+    return spheres[0].radius;
+  };
+  // 3.75 exp(-q^2 / 2) is the level, and what lies farthest out counts.
+  EXPECT_NEAR(radius_at({1}, true), 2 * std::sqrt(2 * std::log(3.75)), 1e-6);
+  EXPECT_NEAR(radius_at({1, 0.01, 2}, true), 2 * std::sqrt(2 * std::log(375)), 1e-6);
+  EXPECT_NEAR(radius_at({1e-9}, true), 8, 1e-6) << "no kernel goes on beyond its support";
+  EXPECT_NEAR(radius_at({4}, true), 0, 1e-6);
+  EXPECT_NEAR(radius_at({-1}, true), 0, 1e-6);
+  EXPECT_NEAR(radius_at({0}, true), 8, 1e-6);
+  EXPECT_NEAR(radius_at({1}, false), 8, 1e-6);
+  source.weight = {-3, 3};
+  EXPECT_NEAR(radius_at({1}, true), 8, 1e-6) << "of both signs the field says nothing of kernels";
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <utility>
 
 #include "core/error.h"
 #include "scene/geometry.h"
@@ -11,6 +12,7 @@
 namespace motes {
 namespace {
 
+using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -75,6 +77,59 @@ TEST(GeometrySource, LeavesBondsByDistanceToTheTreeAndDrawsJoints) {
   // The oxygen keeps its colour, but no ball is thinner than its sticks.
   EXPECT_THAT(source.radius, ElementsAre(0.2F, 0.2F, 0.2F, 0.2F));
   EXPECT_THAT(source.srgb, ElementsAre(0xff0d0d, 0x0000ff, 0x0000ff, 0x0000ff));
+}
+
+/// Two pairs of particles, each of which touches its partner at a radius of 0.5.
+ParticleSet pairs(std::string species) {
+  ParticleSet particles;
+  particles.x = {0, 1, 9, 9};
+  particles.y = {0, 0, 0, 1};
+  particles.z = {0, 0, 0, 0};
+  particles.species_names = {std::move(species)};
+  particles.species = {0, 0, 0, 0};
+  return particles;
+}
+
+TEST(GeometrySource, TakesParticlesOwnSizesWithoutElements) {
+  Geometry balls;
+  balls.scale = 2;
+  for (const bool named : {true, false}) {
+    ParticleSet particles = pairs("dark matter");
+    if (!named) {
+      particles.species.clear();
+      particles.species_names.clear();
+    }
+    Warnings warnings;
+    EXPECT_THAT(make_geometry_source(particles, {balls}, warnings).radius, ElementsAre(1, 1, 1, 1));
+    EXPECT_THAT(warnings.lines(),
+                ElementsAre("van der Waals radii: none of the particles is of a chemical element; "
+                            "taken instead: half the mean distance of nearest neighbours"));
+    particles.properties = {{"radius", {3, 4, 5, 6}}};
+    EXPECT_THAT(make_geometry_source(particles, {balls}, warnings).radius,
+                ElementsAre(6, 8, 10, 12));
+    EXPECT_THAT(warnings.lines(), Contains(HasSubstr("the file's radii or smoothing lengths")));
+  }
+  // A name that no particle has makes no elements of them.
+  ParticleSet particles = pairs("dark matter");
+  particles.species_names.emplace_back("C");
+  Warnings warnings;
+  EXPECT_THAT(make_geometry_source(particles, {balls}, warnings).radius, ElementsAre(1, 1, 1, 1));
+}
+
+TEST(GeometrySource, SaysWhereNoBondIsBetweenSelectedParticles) {
+  Geometry sticks;
+  sticks.type = Geometry::Type::sticks;
+  sticks.radius = 0.1;
+  ParticleSet particles = pairs("C");
+  particles.bonds = {{0, 1}, {2, 3}};
+  Warnings warnings;
+  EXPECT_EQ(make_geometry_source(particles, {sticks}, warnings).bonds, particles.bonds);
+  EXPECT_THAT(warnings.lines(), ElementsAre());
+  sticks.select.index = {{1, 2}};
+  EXPECT_THAT(make_geometry_source(particles, {sticks}, warnings).bonds, ElementsAre());
+  EXPECT_THAT(warnings.lines(),
+              ElementsAre(HasSubstr("none of the 2 bonds is between two particles that are both "
+                                    "selected")));
 }
 
 TEST(GeometrySource, RefusesWithOneClearLine) {

@@ -111,5 +111,20 @@ TEST(ParseScene, StylesAreOfWhatTheDataHave) {
   EXPECT_TRUE(scene.fields.at(0).fitted_isosurfaces);
 }
 
+TEST(Style, SuggestsWhatAnotherProgramsNameMeans) {
+  for (const auto& [name, meant] :
+       {std::pair{"balls", "did you mean 'spheres' or 'ball-and-stick'?"},
+        {"licorice", "did you mean 'ball-and-stick'?"},
+        {"surfaces", "did you mean 'surface'?"}}) {
+    Scene scene;
+    try {
+      apply_style(name, scene);
+      FAIL() << name;
+    } catch (const Error& error) {
+      EXPECT_THAT(error.what(), testing::HasSubstr(meant));
+    }
+  }
+}
+
 }  // namespace
 }  // namespace motes
