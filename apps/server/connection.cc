@@ -39,9 +39,9 @@ Admission admit(const Site& site, const Socket::Request& request) {
     const auto value = request[name];
     return {value.data(), value.size()};
   };
-  if (!site.hosts.accept(header(http::field::host), header(http::field::origin))) {
-    return {{}, http::status::forbidden, "this name or origin is not the server's own"};
-  }
+  const std::string refusal =
+      site.hosts.refusal(header(http::field::host), header(http::field::origin));
+  if (!refusal.empty()) return {{}, http::status::forbidden, refusal};
   const auto text = request.target();
   auto target = parse_target({text.data(), text.size()});
   if (!target) return {{}, http::status::bad_request, "expected a path"};

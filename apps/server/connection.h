@@ -21,7 +21,7 @@ struct Site {
   Site(const ServerOptions& options_, Studio& studio_, Files& files_)
       : options(options_),
         token(options_.token.empty() ? make_token() : options_.token),
-        hosts(options_.address, options_.hosts),
+        hosts(listening_address(options_.address), options_.hosts),
         studio(studio_),
         files(files_) {}
 

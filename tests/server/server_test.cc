@@ -11,7 +11,9 @@
 #include <string>
 #include <vector>
 
+#include "server/files.h"
 #include "server/running_server.h"
+#include "server/studio.h"
 
 namespace motes::server {
 namespace {
@@ -39,6 +41,34 @@ TEST(Server, KnowsItsNamesAndItsOwnPages) {
   EXPECT_EQ(request(server, http::verb::get, page).status, 200);
   EXPECT_EQ(request(server, http::verb::get, page, "", "evil.com").status, 403);
   EXPECT_EQ(request(server, http::verb::get, page, "", "127.0.0.1", "http://evil.com").status, 403);
+}
+
+TEST(Server, TellsHowToReachIt) {
+  const auto told = [](const std::string& address) {
+    Studio studio;
+    Files files("/");
+    ServerOptions options;
+    options.address = address;
+    options.token = "abcdefghijklmnop";
+    const Server server(options, studio, files);
+    const std::string port = std::to_string(server.port());
+    std::string text = server.greeting("me", "node");
+    for (auto at = text.find(port); at != text.npos; at = text.find(port)) {
+      text.replace(at, port.size(), "PORT");
+    }
+    return text;
+  };
+  for (const std::string address : {"127.0.0.1", "localhost"}) {
+    const std::string text = told(address);
+    EXPECT_THAT(text, HasSubstr("http://127.0.0.1:PORT/?token=abcdefghijklmnop\n"));
+    EXPECT_THAT(text, HasSubstr("ssh -N -L PORT:127.0.0.1:PORT me@node\n"));
+    EXPECT_THAT(text, testing::Not(HasSubstr("network")));
+  }
+  const std::string open = told("0.0.0.0");
+  EXPECT_THAT(open, HasSubstr("http://localhost:PORT/?token=abcdefghijklmnop\n"));
+  EXPECT_THAT(open, HasSubstr("http://node:PORT/?token=abcdefghijklmnop\n"));
+  EXPECT_THAT(open, HasSubstr("ssh -N -L PORT:127.0.0.1:PORT me@node\n"));
+  EXPECT_THAT(open, HasSubstr("Others in the network can reach port PORT"));
 }
 
 TEST(Server, GivesThePageUnderAStrictPolicy) {
