@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -62,17 +63,18 @@ void run(Options options) {
   if (!std::filesystem::exists(path)) throw Error(path, "there is no such file");
   if (options.folder.empty()) options.folder = path.parent_path().string();
 
-  server::Files files(options.folder);
+  server::Files files(options.folder, options.server.max_kept_bytes);
   Scene scene = open_scene(path);
   options.changes.apply(scene);
   files.allow(scene);
   server::Studio studio;
   server::Server server(options.server, studio, files);
-  studio.open(
-      {.name = path.filename().string(),
-       .scene = [scene] { return scene; },
-       .failed =
-           [](const std::string& error) { fmt::print(stderr, "motes: error: {}\n", error); }});
+  studio.open({.name = path.filename().string(),
+               .scene = [scene] { return scene; },
+               .failed =
+                   [](const std::optional<std::string>& error) {
+                     if (error) fmt::print(stderr, "motes: error: {}\n", *error);
+                   }});
   const char* user = std::getenv("USER");
   fmt::print("{}", server.greeting(user != nullptr ? user : "", server::machine_name()));
   std::fflush(stdout);

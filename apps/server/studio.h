@@ -5,6 +5,7 @@
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <memory>
@@ -12,6 +13,7 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "core/report.h"
 #include "document/document.h"
@@ -32,8 +34,9 @@ struct Opening {
   std::function<Scene()> scene;                ///< called on the loader's thread; throws Error
   std::optional<ClientId> client = {};         ///< who asked for it
   std::optional<std::uint32_t> sequence = {};  ///< by which "scene" message, if by one
-  /// Told what was wrong with it, on the studio's thread; may be null.
-  std::function<void(const std::string&)> failed = nullptr;
+  /// Told that nothing came of it, and what was wrong with it, unless it was cancelled, on the
+  /// studio's thread; may be null.
+  std::function<void(const std::optional<std::string>& error)> failed = nullptr;
 };
 
 /// A picture to be saved.
@@ -69,6 +72,8 @@ class Studio {
   void set_scene(ClientId client, std::uint32_t sequence, Scene scene);
   /// Opens something; what there is stays until it is ready.
   void open(Opening opening);
+  /// The files of what is shown and of what is being opened.
+  std::vector<std::filesystem::path> files_in_use();
   void picture(const PictureRequest& request, PictureAnswer answer);
   /// There may be no answer then.
   void abandon(const PictureRequest& request);
@@ -111,9 +116,12 @@ class Studio {
   void answer(ClientId client, Viewer& viewer, const Message& message);
   void change_scene(ClientId client, std::uint32_t sequence, const Scene& scene);
   void start_opening(const Opening& opening);
+  void end_opening(const Opening& opening, std::shared_ptr<Document> document,
+                   const std::optional<std::string>& error, const Warnings& warnings);
   void adopt(const Opening& opening, std::shared_ptr<Document> document, const Warnings& warnings);
   bool save_picture(const PictureRequest& request, const PictureAnswer& answer,
                     const std::atomic<bool>* cancel);
+  void note_shown_files();
   void count_frames();
   void prefetch(std::uint64_t frame);
 
@@ -124,6 +132,7 @@ class Studio {
   Clock::time_point under_way_since_;
   std::atomic<bool> break_off_ = false;
   bool ended_ = false;
+  std::vector<std::filesystem::path> shown_files_, opening_files_;
 
   std::shared_ptr<Document> document_;  ///< null: nothing opened yet
   Viewers viewers_;

@@ -46,7 +46,7 @@ TEST(Server, KnowsItsNamesAndItsOwnPages) {
 TEST(Server, TellsHowToReachIt) {
   const auto told = [](const std::string& address) {
     Studio studio;
-    Files files("/");
+    Files files("/", 0);
     ServerOptions options;
     options.address = address;
     options.token = "abcdefghijklmnop";
@@ -208,6 +208,47 @@ TEST(Server, TakesUploadsUpToItsLimit) {
   while (scene.at("data").at("particles") != 1) scene = client.wait_for("scene");
 }
 
+TEST(Server, KeepsNoUploadThatItCannotOpenAndNotMoreThanItsLimit) {
+  ServerOptions options;
+  options.max_kept_bytes = 100;
+  const RunningServer server(options);
+  const std::string upload = "/upload?name=sent.xyz&token=" + server.token();
+  EXPECT_EQ(request(server, http::verb::post, upload, std::string(101, 'x')).status, 507);
+  TestClient client(server);
+  const auto open = [&](const std::string& body) -> std::filesystem::path {
+    const std::string path =
+        nlohmann::json::parse(request(server, http::verb::post, upload, body).body).at("path");
+    client.send(nlohmann::json{{"type", "open"}, {"path", path}}.dump());
+    return path;
+  };
+  const auto bad = open("no particles");
+  client.wait_for("error");
+  EXPECT_FALSE(std::filesystem::exists(bad));
+  const auto good = open("1\n\nC 0 0 0\n");
+  while (client.wait_for("scene").at("data").at("particles") != 1) {
+  }
+  // It is shown: no other takes its place.
+  EXPECT_EQ(request(server, http::verb::post, upload, std::string(99, 'x')).status, 507);
+  EXPECT_TRUE(std::filesystem::exists(good));
+  client.send(R"({"type":"open","path":"other.xyz"})");
+  while (client.wait_for("scene").at("data").at("particles") != 2) {
+  }
+  EXPECT_EQ(request(server, http::verb::post, upload, std::string(99, 'x')).status, 200);
+  EXPECT_FALSE(std::filesystem::exists(good));
+}
+
+TEST(Server, AnswersSoManyRequestsAndStrangersKeepNobodyOut) {
+  ServerOptions options;
+  options.requests_per_second = 1e-3;
+  options.request_burst = 2;
+  const RunningServer server(options);
+  const auto status = [&server](const std::string& token) {
+    return request(server, http::verb::get, "/?token=" + token).status;
+  };
+  for (const int expected : {403, 403, 429}) EXPECT_EQ(status("wrong"), expected);
+  for (const int expected : {200, 200, 429}) EXPECT_EQ(status(server.token()), expected);
+}
+
 TEST(Server, SaysWhatIsWrongWithASceneAndKeepsTheOldOne) {
   const RunningServer server;
   TestClient client(server);
@@ -224,6 +265,7 @@ TEST(Server, SaysWhatIsWrongWithASceneAndKeepsTheOldOne) {
 
 TEST(Server, OutlivesThousandClientsThatComeAndGo) {
   ServerOptions options;
+  options.request_burst = 2000;
   options.max_clients = 1001;  // of some it may not have heard yet that they have gone
   const RunningServer server(options);
   TestClient client(server);

@@ -1,13 +1,16 @@
 // Clients that keep the server waiting.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <boost/asio/read.hpp>
 #include <boost/asio/write.hpp>
 #include <chrono>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "server/running_server.h"
 
@@ -149,6 +152,34 @@ TEST(SlowClients, ThatAcknowledgeAreKept) {
   client.look(1, 1, false);
   while (client.wait_for_final().header.view_sequence != 1) {
   }
+}
+
+TEST(SlowClients, LetFewPicturesWaitForThem) {
+  const RunningServer server;
+  TestClient client(server);
+  client.wait_for("scene");
+  const auto target = [&server](int side) {
+    return fmt::format("/picture?client=1&width={0}&height={0}&format=npy&token={1}", side,
+                       server.token());
+  };
+  const auto becomes = [&](int status) {
+    const auto deadline = Clock::now() + very_long;
+    while (request(server, http::verb::get, target(4)).status != status) {
+      if (Clock::now() > deadline) return false;
+      std::this_thread::sleep_for(20ms);
+    }
+    return true;
+  };
+  {
+    std::vector<std::unique_ptr<RawConnection>> deaf;
+    for (int i = 0; i < 4; ++i) {
+      deaf.push_back(std::make_unique<RawConnection>(server));
+      // More than the system keeps for them.
+      deaf.back()->send("GET " + target(1024) + " HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n");
+    }
+    EXPECT_TRUE(becomes(503));
+  }
+  EXPECT_TRUE(becomes(200));
 }
 
 TEST(SlowClients, ThatTalkAndReadNothingAreLeft) {

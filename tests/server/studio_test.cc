@@ -144,7 +144,7 @@ TEST(Studio, TellsWhoComesLaterWhyNothingIsOpen) {
   std::promise<std::string> failed;
   studio.open({.name = "nothing",
                .scene = []() -> Scene { throw Error("it is not there"); },
-               .failed = [&](const std::string& error) { failed.set_value(error); }});
+               .failed = [&](const auto& error) { failed.set_value(error.value()); }});
   EXPECT_EQ(failed.get_future().get(), "it is not there");
   const auto outlet = std::make_shared<TextOutlet>();
   studio.connect(1, outlet);

@@ -83,8 +83,7 @@ function sendFile(file: File): void {
   };
   const fail = () => {
     upload.value = null;
-    const why = request.status === 413 ? "the server does not take files as large as this" : "";
-    notify("error", `${file.name}: ${why || request.responseText.trim() || "sending failed"}.`);
+    notify("error", `${file.name}: ${request.responseText.trim() || "sending failed"}.`);
   };
   request.upload.onprogress = ({ loaded, total }) => {
     upload.value = { name: file.name, fraction: loaded / Math.max(1, total), cancel };
