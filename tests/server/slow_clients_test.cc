@@ -154,6 +154,37 @@ TEST(SlowClients, ThatAcknowledgeAreKept) {
   }
 }
 
+TEST(SlowClients, GetNoFullPictureThatIsOutdatedOnTheWay) {
+  const RunningServer server;
+  TestClient slow(server, 4096), other(server);
+  other.wait_for("scene");
+  other.send(R"({"type":"follow","client":1})");
+  slow.set_size(1536, 1536);
+  // Pictures to be saved come last: by then the full one waits for the client to read.
+  const Reply saved =
+      request(server, http::verb::get,
+              "/picture?client=1&width=8&height=8&format=png&token=" + server.token());
+  EXPECT_EQ(saved.status, 200);
+  slow.look(1, 1, false);
+  other.wait_for("camera");
+  other.wait_for("camera");
+  bool recalled = false;
+  for (bool done = false; !done;) {
+    const std::string message = slow.read().value();
+    const auto header = parse_frame_header(message);
+    if (!header) continue;
+    slow.acknowledge(header->frame);
+    if (header->final && header->view_sequence == 0) {
+      EXPECT_GT(header->bytes, 300'000U);  // or the system has taken it before
+      EXPECT_FALSE(is_whole(*header, message));
+      recalled = true;
+    }
+    done = header->final && header->view_sequence == 1;
+    EXPECT_TRUE(!done || is_whole(*header, message));
+  }
+  EXPECT_TRUE(recalled);
+}
+
 TEST(SlowClients, LetFewPicturesWaitForThem) {
   const RunningServer server;
   TestClient client(server);
