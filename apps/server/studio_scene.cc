@@ -89,7 +89,8 @@ std::vector<std::filesystem::path> Studio::files_in_use() {
   return files;
 }
 
-void Studio::note_shown_files() {
+void Studio::document_has_changed() {
+  ++version_;
   const std::lock_guard lock(mutex_);
   shown_files_ = files_of(document_->scene());
 }
@@ -97,7 +98,7 @@ void Studio::note_shown_files() {
 void Studio::adopt(const Opening& opening, std::shared_ptr<Document> document,
                    const Warnings& warnings) {
   document_ = std::move(document);
-  note_shown_files();
+  document_has_changed();
   frames_.reset();
   if (!document_->info().path.empty()) {
     reader_ = std::make_shared<FrameReader>(document_->frame_reader());
@@ -160,7 +161,7 @@ void Studio::change_scene(ClientId client, std::uint32_t sequence, const Scene& 
   });
   if (progress.has_reported()) send_to_all(ready_text());
   if (error) return viewers_.at(client).outlet().send_text(error_text(sequence, *error));
-  note_shown_files();
+  document_has_changed();
   for (auto& [id, viewer] : viewers_) viewer.invalidate();
   viewers_.at(client).took_scene(sequence);
   send_scene({client, sequence});

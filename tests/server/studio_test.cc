@@ -142,6 +142,46 @@ class TextOutlet : public Outlet {
   std::string texts_;
 };
 
+TEST(Studio, ShowsFramesWhileAPictureIsMade) {
+  OpenStudio open(16);
+  Studio& studio = open.studio;
+  const PictureRequest huge{1, 5000, 5000};
+  std::atomic<bool> made = false;
+  studio.picture(huge, [&](const auto&, const auto&) { made = true; });
+  Camera camera;
+  camera.target = {20, 20, 20};
+  for (std::uint32_t view = 1; view <= 10; ++view) {  // more than it can be patient with
+    camera.eye = {20.0 + view, 20, 120};
+    studio.handle(1, ViewMessage{view, camera, false});
+    EXPECT_NE(open.outlet->wait_for_final(view), "");
+  }
+  EXPECT_FALSE(made);
+  studio.abandon(huge);
+}
+
+TEST(Studio, FinishesPicturesThatAreBrokenOff) {
+  OpenStudio open(16);
+  Studio& studio = open.studio;
+  Camera camera;
+  camera.target = {20, 20, 20};
+  camera.eye = {21, 20, 120};
+  studio.handle(1, ViewMessage{1, camera, false});
+  EXPECT_NE(open.outlet->wait_for_final(1), "");
+  const std::string expected = picture_of(open.scene, camera, 400, 400);
+  std::promise<std::string> made;
+  studio.picture({1, 400, 400}, [&](const std::optional<std::string>& file, const std::string&) {
+    made.set_value(file.value());
+  });
+  auto picture = made.get_future();
+  Camera other = camera;
+  for (std::uint32_t view = 2;
+       picture.wait_for(std::chrono::milliseconds(20)) != std::future_status::ready; ++view) {
+    other.eye.y += 1;
+    studio.handle(1, ViewMessage{view, other, false});
+  }
+  EXPECT_EQ(picture.get(), expected);
+}
+
 /// A client to which a full picture takes for ever.
 class SlowOutlet : public Outlet {
  public:
