@@ -122,6 +122,7 @@ asio::awaitable<void> serve_socket(beast::tcp_stream stream, const Socket::Reque
     socket->close(close_too_many, "too many clients");
   } else {
     site.sockets.emplace(id, socket);
+    socket->send_text(hello_text(id, site.files.uploads_folder()));
     site.studio.connect(id, socket);
   }
   try {

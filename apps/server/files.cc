@@ -1,6 +1,8 @@
 // Every path of a client goes through resolve() before anything is opened.
 #include "server/files.h"
 
+#include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
 #include <system_error>
 
@@ -79,10 +81,24 @@ fs::path Files::resolve(std::string_view path) const {
   return folder_.resolve(path);
 }
 
+fs::path Files::resolve_in_scene(const fs::path& directory, const std::string& path) const {
+  if (path.starts_with('/')) return resolve(path);
+  try {
+    return resolve((directory / path).string());
+  } catch (const Error&) {
+    const std::lock_guard lock(mutex_);
+    if (const auto sent = uploads_.find(path)) return *sent;
+  }
+  throw Error(
+      fmt::format("{}: there is no such file in {}, where the scene's paths lead from, and "
+                  "none of that name was dropped before",
+                  printable(path, 400), directory.string()));
+}
+
 Scene Files::parse_scene(std::string_view text, const fs::path& directory) const {
   json scene = parse_json(text, "scene");
   for (json* path : paths_of(scene)) {
-    *path = resolve((directory / path->get<std::string>()).string()).string();
+    *path = resolve_in_scene(directory, path->get<std::string>()).string();
   }
   return motes::parse_scene(scene.dump(), "scene", look_at_data);
 }

@@ -39,13 +39,20 @@ class Files {
     return work(uploads_);
   }
 
-  /// A scene from JSON that is not trusted, its paths relative to `directory`: none of them is
-  /// opened that resolve() does not take. Throws Error as parse_scene() and resolve() do.
+  /// Below which the files of clients are, each in a folder of its own.
+  const std::filesystem::path& uploads_folder() const { return uploads_.path(); }
+
+  /// A scene from JSON that is not trusted, its paths relative to `directory` or names of files
+  /// that were sent: none of them is opened that resolve() does not take. Throws Error as
+  /// parse_scene() and resolve() do.
   Scene parse_scene(std::string_view json, const std::filesystem::path& directory) const;
   /// The scene in `path`, as resolve() has found it, or of the data in it. Throws Error.
   Scene open_scene(const std::filesystem::path& path) const;
 
  private:
+  std::filesystem::path resolve_in_scene(const std::filesystem::path& directory,
+                                         const std::string& path) const;
+
   Folder folder_;
   mutable std::mutex mutex_;
   std::set<std::filesystem::path> allowed_;  ///< canonical

@@ -29,7 +29,6 @@ void Studio::connect(ClientId client, std::shared_ptr<Outlet> outlet) {
   post(
       [this, client, outlet = std::move(outlet)] {
         Viewer& viewer = viewers_.emplace(client, outlet).first->second;
-        viewer.outlet().send_text(hello_text(client));
         if (document_) {
           viewer.look_anew(document_->camera());
           viewer.outlet().send_text(scene_text(*document_, frames_, {}));

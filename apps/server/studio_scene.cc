@@ -99,7 +99,8 @@ void Studio::adopt(const Opening& opening, std::shared_ptr<Document> document,
                    const Warnings& warnings) {
   document_ = std::move(document);
   document_has_changed();
-  frames_.reset();
+  // Grids do not move.
+  frames_ = document_->info().particles == 0 ? std::optional<std::size_t>(1) : std::nullopt;
   if (!document_->info().path.empty()) {
     reader_ = std::make_shared<FrameReader>(document_->frame_reader());
   }
@@ -116,7 +117,7 @@ void Studio::adopt(const Opening& opening, std::shared_ptr<Document> document,
 }
 
 void Studio::count_frames() {
-  if (document_->info().path.empty() || document_->info().particles == 0) return;
+  if (frames_) return;
   lookahead_.add([this, reader = reader_, number = opening_](const std::atomic<bool>& cancelled) {
     LoadProgress progress([](std::string_view, double) {}, cancelled);
     if (error_of([&] { reader->count_frames(&progress); })) return;

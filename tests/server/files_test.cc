@@ -185,6 +185,13 @@ TEST_F(FilesTest, ThatAreSentHaveAPlaceUntilTheEnd) {
     EXPECT_NE(first, second);
     std::ofstream(first) << "1\n";
     EXPECT_EQ(files.resolve(first.string()), first);
+    // Scenes name them as their users do; what lies in the folder comes first.
+    const std::string sent = R"({"version":1,"data":{"path":"x.xyz"}})";
+    EXPECT_THROW(files.parse_scene(sent, root_ / "shared"), Error);  // it has not come whole yet
+    files.with_uploads([&](Uploads& uploads) { uploads.complete(first); });
+    EXPECT_EQ(files.parse_scene(sent, root_ / "shared").data_path, first);
+    write("shared/x.xyz");
+    EXPECT_EQ(files.parse_scene(sent, root_ / "shared").data_path, root_ / "shared/x.xyz");
     for (const char* name : {"", ".", "..", "a/", "/"})
       EXPECT_THROW(place_for(name), Error) << name;
   }

@@ -24,12 +24,13 @@ describe("parseFrame", () => {
       renderMs: 10,
       encodeMs: 0.5,
       image: new Uint8Array([1, 2, 3]),
+      recalled: false,
     });
     expect(parseFrame(message(0, 0))).toMatchObject({ mediaType: "image/jpeg", final: false });
   });
 
   it("tells what was recalled", () => {
-    expect(parseFrame(message(1, 1).slice(0, 42))).toMatchObject({ id: 12, image: null });
+    expect(parseFrame(message(1, 1).slice(0, 42))).toMatchObject({ id: 12, recalled: true });
   });
 
   it("refuses what is no frame", () => {

@@ -16,8 +16,9 @@ export interface Frame {
   height: number;
   renderMs: number;
   encodeMs: number;
-  /** Null: the server has recalled it on its way, because something newer is to be shown. */
-  image: Uint8Array<ArrayBuffer> | null;
+  image: Uint8Array<ArrayBuffer>;
+  /** Not all of the image has come: the server has recalled it, as something newer is to be shown. */
+  recalled: boolean;
 }
 
 /** Null for what is no such message. */
@@ -38,6 +39,7 @@ export function parseFrame(message: ArrayBuffer): Frame | null {
     height: view.getUint32(24, true),
     renderMs: view.getFloat32(28, true),
     encodeMs: view.getFloat32(32, true),
-    image: message.byteLength < headerBytes + bytes ? null : new Uint8Array(message, headerBytes),
+    image: new Uint8Array(message, headerBytes),
+    recalled: message.byteLength < headerBytes + bytes,
   };
 }

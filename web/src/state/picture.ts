@@ -19,7 +19,7 @@ let decoding = false;
 let connection = 0;
 
 async function decode(frame: Frame): Promise<ImageBitmap | null> {
-  const blob = new Blob([frame.image!], { type: frame.mediaType });
+  const blob = new Blob([frame.image], { type: frame.mediaType });
   try {
     return await createImageBitmap(blob, { colorSpaceConversion: "none" });
   } catch {
@@ -58,7 +58,7 @@ export function frameRate(): number {
 let newestId = 0;
 onFrame((frame) => {
   // Never back to an older picture.
-  if (frame.id <= newestId || !frame.image) return;
+  if (frame.id <= newestId || frame.recalled) return;
   newestId = frame.id;
   latest = frame;
   void show();
