@@ -1,13 +1,12 @@
 // motes view: a server that shows the scene in browsers.
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -19,6 +18,7 @@
 #include "motes/scene_options.h"
 #include "motes/thread_limit.h"
 #include "render/render_tile.h"
+#include "server/access.h"
 #include "server/files.h"
 #include "server/server.h"
 #include "server/studio.h"
@@ -43,24 +43,6 @@ struct Options {
   SceneChanges changes;
 };
 
-/// The line that makes the tunnel from the user's own machine.
-std::string tunnel_line(std::uint16_t port) {
-  std::array<char, 256> host{};
-  gethostname(host.data(), host.size() - 1);
-  const char* user = std::getenv("USER");
-  return fmt::format("ssh -N -L {0}:127.0.0.1:{0} {1}{2}", port,
-                     user != nullptr ? std::string(user) + "@" : "", host.data());
-}
-
-void print_addresses(const server::Server& server, const server::ServerOptions& options) {
-  fmt::print("Open in a browser:      {}\n", server.url());
-  if (options.address == "127.0.0.1" || options.address == "::1") {
-    fmt::print("From another machine:   {}\n", tunnel_line(server.port()));
-    fmt::print("                        and then the same address there\n");
-  }
-  std::fflush(stdout);
-}
-
 /// "/", or "/name/".
 std::string normal_base_url(std::string url) {
   if (!url.starts_with('/')) url.insert(0, "/");
@@ -72,24 +54,30 @@ void run(Options options) {
   const ThreadLimit limit(options.threads);
   instruction_set();  // a MOTES_TARGET that is not to be had is told at once
   // Not an option, which everybody on the machine could read.
-  if (const char* token = std::getenv("MOTES_VIEW_TOKEN")) options.server.token = token;
+  if (const char* token = std::getenv("MOTES_VIEW_TOKEN"); token != nullptr && *token != 0) {
+    server::check_token(token, "MOTES_VIEW_TOKEN");
+    options.server.token = token;
+  }
   options.server.base_url = normal_base_url(options.server.base_url);
   const std::filesystem::path path = std::filesystem::absolute(options.path);
   if (!std::filesystem::exists(path)) throw Error(path, "there is no such file");
   if (options.folder.empty()) options.folder = path.parent_path().string();
 
-  server::Files files(options.folder);
+  server::Files files(options.folder, options.server.max_kept_bytes);
   Scene scene = open_scene(path);
   options.changes.apply(scene);
   files.allow(scene);
   server::Studio studio;
   server::Server server(options.server, studio, files);
-  studio.open(
-      {.name = path.filename().string(),
-       .scene = [scene] { return scene; },
-       .failed =
-           [](const std::string& error) { fmt::print(stderr, "motes: error: {}\n", error); }});
-  print_addresses(server, options.server);
+  studio.open({.name = path.filename().string(),
+               .scene = [scene] { return scene; },
+               .failed =
+                   [](const std::optional<std::string>& error) {
+                     if (error) fmt::print(stderr, "motes: error: {}\n", *error);
+                   }});
+  const char* user = std::getenv("USER");
+  fmt::print("{}", server.greeting(user != nullptr ? user : "", server::machine_name()));
+  std::fflush(stdout);
   const StopWhenInterrupted stop([&server] { server.stop(); });
   server.run();
 }

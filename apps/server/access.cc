@@ -52,6 +52,27 @@ std::string make_token() {
   return token;
 }
 
+void check_token(std::string_view token, std::string_view origin) {
+  constexpr std::size_t shortest = 16;
+  const auto is_plain = [](unsigned char c) {
+    return c < 128 && (std::isalnum(c) != 0 || c == '-' || c == '.' || c == '_' || c == '~');
+  };
+  if (token.size() >= shortest && std::all_of(token.begin(), token.end(), is_plain)) return;
+  throw Error(fmt::format("{}: expected at least {} of the characters A-Z a-z 0-9 - . _ ~", origin,
+                          shortest));
+}
+
+asio::ip::address listening_address(std::string_view text) {
+  const std::string address = without_brackets(text);
+  if (address == "localhost") return asio::ip::address_v4::loopback();
+  boost::system::error_code error;
+  const auto found = asio::ip::make_address(address, error);
+  if (!error) return found;
+  throw Error(fmt::format(
+      "--address {}: expected an IP address of this machine, 0.0.0.0 for all of them, or localhost",
+      printable(text, 100)));
+}
+
 bool equal_in_constant_time(std::string_view a, std::string_view b) {
   if (a.size() != b.size()) return false;
   unsigned difference = 0;
@@ -69,27 +90,45 @@ std::string host_name(std::string_view authority) {
   return without_brackets(authority.substr(0, colon));
 }
 
-HostNames::HostNames(std::string_view address, const std::vector<std::string>& others)
-    : names_{"127.0.0.1", "localhost", "::1", without_brackets(address)} {
-  for (const std::string& name : others) others_.push_back(without_brackets(name));
-  names_.insert(names_.end(), others_.begin(), others_.end());
-  if (address != "0.0.0.0" && address != "::") return;
-  std::array<char, 256> own{};
-  if (gethostname(own.data(), own.size() - 1) == 0) names_.push_back(lower(own.data()));
+std::string machine_name() {
+  std::array<char, 256> name{};
+  return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
 }
 
-bool HostNames::knows(std::string_view name) const { return contains(names_, std::string(name)); }
+HostNames::HostNames(const asio::ip::address& address, const std::vector<std::string>& others)
+    : names_{"127.0.0.1", "localhost", "::1", address.to_string()},
+      any_address_(address.is_unspecified()) {
+  for (const std::string& name : others) others_.push_back(without_brackets(name));
+  names_.insert(names_.end(), others_.begin(), others_.end());
+  if (any_address_) names_.push_back(lower(machine_name()));
+}
 
-bool HostNames::accept(std::string_view host, std::string_view origin) const {
+bool HostNames::knows(const std::string& name) const {
+  if (contains(names_, name)) return true;
+  boost::system::error_code error;
+  asio::ip::make_address(name, error);
+  return any_address_ && !error;
+}
+
+std::string HostNames::refusal(std::string_view host, std::string_view origin) const {
+  const auto unknown = [](const std::string& name) {
+    return fmt::format(
+        "the server is not known as '{0}': if it is to be, give motes view --host {0}",
+        printable(name, 100));
+  };
   const std::string name = host_name(host);
-  if (name.empty() || !knows(name)) return false;
-  if (origin.empty()) return true;
+  if (name.empty()) return "expected the name of a host";
+  if (!knows(name)) return unknown(name);
+  if (origin.empty()) return "";
   const auto scheme = origin.find("://");
-  if (scheme == origin.npos) return false;  // also "null", of sandboxed pages and files
+  // "null" is of sandboxed pages and files.
+  if (scheme == origin.npos) return "this is not asked for by the server's own page";
   const std::string_view authority = origin.substr(scheme + 3);
-  if (lower(authority) == lower(host)) return true;
+  if (lower(authority) == lower(host)) return "";
   // A proxy may have changed the Host, but the user has named it.
-  return contains(others_, host_name(authority));
+  const std::string proxy = host_name(authority);
+  if (contains(others_, proxy)) return "";
+  return knows(proxy) ? "this is not asked for by the server's own page" : unknown(proxy);
 }
 
 }  // namespace motes::server

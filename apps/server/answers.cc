@@ -96,11 +96,12 @@ std::size_t resident_bytes() {
 
 }  // namespace
 
-std::string hello_text(ClientId client) {
+std::string hello_text(ClientId client, const std::filesystem::path& uploads) {
   return text_of({{"type", "hello"},
                   {"protocol", 1},
                   {"version", MOTES_VERSION},
                   {"client", client},
+                  {"uploads", uploads.string()},
                   {"color_maps", color_maps()},
                   {"styles", style_names()},
                   {"engines", {"sweep", "coherent", "direct", "cells"}}});

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
@@ -18,7 +19,8 @@ namespace motes::server {
 
 using Sequence = std::optional<std::uint32_t>;
 
-std::string hello_text(ClientId client);
+/// `uploads`: the folder below which the files of clients have temporary names.
+std::string hello_text(ClientId client, const std::filesystem::path& uploads);
 /// Whose message is answered, and which; and what else there is to say.
 struct SceneAnswer {
   std::optional<ClientId> client = {};

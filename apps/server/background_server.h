@@ -18,7 +18,9 @@ class BackgroundServer {
  public:
   /// Shows `first`. Throws Error as Files and Server do.
   BackgroundServer(const ServerOptions& options, const std::filesystem::path& folder, Opening first)
-      : files_(folder), server_(options, studio_, files_), thread_([this] { server_.run(); }) {
+      : files_(folder, options.max_kept_bytes),
+        server_(options, studio_, files_),
+        thread_([this] { server_.run(); }) {
     studio_.open(std::move(first));
   }
   ~BackgroundServer() {

@@ -31,9 +31,16 @@ struct Client::State {
   std::optional<boost::system::error_code> arrived;  ///< what it came to
 };
 
-Client::Client(std::uint16_t port, std::string_view token) : state_(std::make_unique<State>()) {
+Client::Client(std::uint16_t port, std::string_view token, std::optional<int> receive_buffer)
+    : state_(std::make_unique<State>()) {
   auto& socket = state_->socket;
-  beast::get_lowest_layer(socket).connect({asio::ip::address_v4::loopback(), port});
+  const asio::ip::tcp::endpoint endpoint(asio::ip::address_v4::loopback(), port);
+  beast::get_lowest_layer(socket).socket().open(endpoint.protocol());
+  if (receive_buffer) {
+    beast::get_lowest_layer(socket).socket().set_option(
+        asio::socket_base::receive_buffer_size(*receive_buffer));
+  }
+  beast::get_lowest_layer(socket).connect(endpoint);
   beast::get_lowest_layer(socket).socket().set_option(asio::ip::tcp::no_delay(true));
   socket.set_option(websocket::stream_base::decorator([](websocket::request_type& request) {
     request.set(http::field::origin, "http://127.0.0.1");
@@ -103,6 +110,7 @@ ReceivedFrame Client::wait_for_frame(bool acknowledged) {
     const auto header = parse_frame_header(message);
     if (!header) continue;
     if (acknowledged) acknowledge(header->frame);
+    if (!is_whole(*header, message)) continue;
     return {*header, message.substr(frame_header_bytes)};
   }
 }

@@ -25,7 +25,8 @@ class Client {
  public:
   using Clock = std::chrono::steady_clock;
 
-  Client(std::uint16_t port, std::string_view token);
+  /// `receive_buffer`: bytes that the system takes before they are read; by default as it likes.
+  Client(std::uint16_t port, std::string_view token, std::optional<int> receive_buffer = {});
   /// Goes without a word, as a killed browser does.
   ~Client();
   Client(const Client&) = delete;
@@ -42,7 +43,7 @@ class Client {
   /// The next text of a type; frames on the way are acknowledged. Throws Error for a text of type
   /// "error", unless that is waited for.
   nlohmann::json wait_for(std::string_view type);
-  /// The next frame, acknowledged if that is wanted; texts on the way are left out.
+  /// The next frame that is whole, acknowledged if that is wanted; texts on the way are left out.
   ReceivedFrame wait_for_frame(bool acknowledged = true);
   /// The next full picture.
   ReceivedFrame wait_for_final();

@@ -3,11 +3,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
+#include <filesystem>
 #include <limits>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include "core/error.h"
 #include "server/answer.h"
@@ -39,9 +42,9 @@ Admission admit(const Site& site, const Socket::Request& request) {
     const auto value = request[name];
     return {value.data(), value.size()};
   };
-  if (!site.hosts.accept(header(http::field::host), header(http::field::origin))) {
-    return {{}, http::status::forbidden, "this name or origin is not the server's own"};
-  }
+  const std::string refusal =
+      site.hosts.refusal(header(http::field::host), header(http::field::origin));
+  if (!refusal.empty()) return {{}, http::status::forbidden, refusal};
   const auto text = request.target();
   auto target = parse_target({text.data(), text.size()});
   if (!target) return {{}, http::status::bad_request, "expected a path"};
@@ -55,6 +58,13 @@ Admission admit(const Site& site, const Socket::Request& request) {
     return {{}, http::status::not_found, "there is no such page"};
   target->path.erase(0, base.size() - 1);
   return {std::move(target), {}, ""};
+}
+
+/// What could not be opened is of no use, unless it is shown from before. On the studio's thread.
+void discard_upload(Site& site, const std::filesystem::path& path) {
+  const auto in_use = site.studio.files_in_use();
+  if (std::find(in_use.begin(), in_use.end(), path) != in_use.end()) return;
+  site.files.with_uploads([&path](Uploads& uploads) { uploads.remove(path); });
 }
 
 /// Waits for messages of one client and passes them on.
@@ -81,9 +91,10 @@ class Reception : public Socket::Receiver {
   void answer_open(Socket& from, const OpenMessage& message) {
     try {
       const auto path = site_.files.resolve(message.path);
-      site_.studio.open({path.filename().string(),
-                         [&files = site_.files, path] { return files.open_scene(path); },
-                         from.id()});
+      Opening opening{path.filename().string(),
+                      [&files = site_.files, path] { return files.open_scene(path); }, from.id()};
+      opening.failed = [&site = site_, path](const auto&) { discard_upload(site, path); };
+      site_.studio.open(std::move(opening));
     } catch (const Error& error) {
       from.send_text(error_text(std::nullopt, error.what()));
     }
@@ -111,6 +122,7 @@ asio::awaitable<void> serve_socket(beast::tcp_stream stream, const Socket::Reque
     socket->close(close_too_many, "too many clients");
   } else {
     site.sockets.emplace(id, socket);
+    socket->send_text(hello_text(id, site.files.uploads_folder()));
     site.studio.connect(id, socket);
   }
   try {
@@ -135,7 +147,7 @@ void set_common_headers(Response& response) {
 
 Answer page_answer() {
   const std::string nonce = make_token();
-  Answer answer{http::status::ok, "text/html; charset=utf-8", page_html(nonce), {}};
+  Answer answer{http::status::ok, "text/html; charset=utf-8", page_html(nonce)};
   answer.headers.emplace_back("Content-Security-Policy", content_security_policy(nonce));
   return answer;
 }
@@ -157,6 +169,12 @@ asio::awaitable<Answer> answer_to(const Target& target,
   if (target.path == "/") co_return page_answer();
   if (target.path == "/picture") co_return co_await make_picture(target, stream.socket(), site);
   co_return text_answer(http::status::not_found, "there is no such page");
+}
+
+/// Those who do not know the token are counted by themselves, so that they keep nobody out.
+bool come_too_fast(Site& site, const Admission& admission) {
+  RateLimit& rate = admission.target ? site.requests : site.refusals;
+  return !rate.take(RateLimit::Clock::now());
 }
 
 asio::awaitable<void> send(beast::tcp_stream& stream, Answer answer, unsigned version, bool head,
@@ -202,6 +220,9 @@ asio::awaitable<void> serve_requests(beast::tcp_stream& stream, Site& site) {
     co_await http::async_read_header(stream, buffer, parser, asio::use_awaitable);
     const auto& request = parser.get();
     Admission admission = admit(site, request);
+    if (come_too_fast(site, admission)) {
+      admission = {{}, http::status::too_many_requests, "too many requests: try again in a second"};
+    }
     if (admission.target && websocket::is_upgrade(request)) {
       if (admission.target->path == "/socket") {
         const auto upgrade = request;

@@ -9,6 +9,7 @@
 #include "server/asio.h"
 #include "server/messages.h"
 #include "server/options.h"
+#include "server/rate_limit.h"
 #include "server/socket.h"
 
 namespace motes::server {
@@ -21,9 +22,11 @@ struct Site {
   Site(const ServerOptions& options_, Studio& studio_, Files& files_)
       : options(options_),
         token(options_.token.empty() ? make_token() : options_.token),
-        hosts(options_.address, options_.hosts),
+        hosts(listening_address(options_.address), options_.hosts),
         studio(studio_),
-        files(files_) {}
+        files(files_),
+        requests(options_.requests_per_second, options_.request_burst),
+        refusals(requests) {}
 
   const ServerOptions& options;
   const std::string token;
@@ -34,6 +37,8 @@ struct Site {
   ClientId last_client = 0;
   std::size_t num_connections = 0;
   std::size_t num_uploads = 0;
+  std::size_t num_pictures = 0;  ///< asked for and not sent yet
+  RateLimit requests, refusals;
 };
 
 /// Answers requests until the connection ends. `site` must outlive it.

@@ -1,6 +1,8 @@
 // Every path of a client goes through resolve() before anything is opened.
 #include "server/files.h"
 
+#include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
 #include <system_error>
 
@@ -46,17 +48,26 @@ std::vector<json*> paths_of(json& scene) {
 
 }  // namespace
 
-void Files::allow(const Scene& scene) {
-  std::vector<fs::path> paths{scene.data_path, scene.kernel.shape.profile.path};
+std::vector<fs::path> files_of(const Scene& scene) {
+  std::vector<fs::path> paths;
+  const auto add = [&paths](const fs::path& path) {
+    if (!path.empty()) paths.push_back(path);
+  };
+  add(scene.data_path);
+  add(scene.kernel.shape.profile.path);
   for (const Field& field : scene.fields) {
-    if (field.grid) paths.push_back(field.grid->path);
-    if (field.kernel_shape) paths.push_back(field.kernel_shape->profile.path);
+    if (field.grid) add(field.grid->path);
+    if (field.kernel_shape) add(field.kernel_shape->profile.path);
   }
+  return paths;
+}
+
+void Files::allow(const Scene& scene) {
   const std::lock_guard lock(mutex_);
-  for (const fs::path& path : paths) {
+  for (const fs::path& path : files_of(scene)) {
     std::error_code error;
-    const fs::path found = path.empty() ? fs::path() : fs::canonical(path, error);
-    if (!error && !found.empty()) allowed_.insert(found);
+    const fs::path found = fs::canonical(path, error);
+    if (!error) allowed_.insert(found);
   }
 }
 
@@ -65,22 +76,29 @@ fs::path Files::resolve(std::string_view path) const {
     std::error_code error;
     fs::path found = fs::canonical(fs::path(std::string(path)), error);
     const std::lock_guard lock(mutex_);
-    if (!error && allowed_.contains(found)) return found;
+    if (!error && (allowed_.contains(found) || uploads_.contains(found))) return found;
   }
   return folder_.resolve(path);
 }
 
-fs::path Files::place_for_upload(std::string_view name) {
-  const std::lock_guard lock(mutex_);
-  fs::path place = uploads_.place_for(name);
-  allowed_.insert(place);
-  return place;
+fs::path Files::resolve_in_scene(const fs::path& directory, const std::string& path) const {
+  if (path.starts_with('/')) return resolve(path);
+  try {
+    return resolve((directory / path).string());
+  } catch (const Error&) {
+    const std::lock_guard lock(mutex_);
+    if (const auto sent = uploads_.find(path)) return *sent;
+  }
+  throw Error(
+      fmt::format("{}: there is no such file in {}, where the scene's paths lead from, and "
+                  "none of that name was dropped before",
+                  printable(path, 400), directory.string()));
 }
 
 Scene Files::parse_scene(std::string_view text, const fs::path& directory) const {
   json scene = parse_json(text, "scene");
   for (json* path : paths_of(scene)) {
-    *path = resolve((directory / path->get<std::string>()).string()).string();
+    *path = resolve_in_scene(directory, path->get<std::string>()).string();
   }
   return motes::parse_scene(scene.dump(), "scene", look_at_data);
 }

@@ -1,6 +1,7 @@
 // What clients may name: the shared folder, what they have sent, and what the user has opened.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <mutex>
 #include <set>
@@ -14,11 +15,15 @@
 
 namespace motes::server {
 
+/// The files that a scene names.
+std::vector<std::filesystem::path> files_of(const Scene& scene);
+
 /// Safe from any thread.
 class Files {
  public:
-  /// Throws Error as Folder does.
-  explicit Files(const std::filesystem::path& folder) : folder_(folder) {}
+  /// Throws Error as Folder and Uploads do.
+  Files(const std::filesystem::path& folder, std::uint64_t max_kept_bytes)
+      : folder_(folder), uploads_(max_kept_bytes) {}
 
   const Folder& folder() const { return folder_; }
   /// Lets clients name all files of a scene that the user has opened.
@@ -27,16 +32,27 @@ class Files {
   /// The file at `path`, relative to the folder or absolute. Throws Error as Folder::resolve()
   /// does.
   std::filesystem::path resolve(std::string_view path) const;
-  /// Where a file that a client sends is put. Throws Error as Uploads does.
-  std::filesystem::path place_for_upload(std::string_view name);
+  /// What clients send, while nobody else looks at it.
+  template <class Work>
+  auto with_uploads(Work&& work) {
+    const std::lock_guard lock(mutex_);
+    return work(uploads_);
+  }
 
-  /// A scene from JSON that is not trusted, its paths relative to `directory`: none of them is
-  /// opened that resolve() does not take. Throws Error as parse_scene() and resolve() do.
+  /// Below which the files of clients are, each in a folder of its own.
+  const std::filesystem::path& uploads_folder() const { return uploads_.path(); }
+
+  /// A scene from JSON that is not trusted, its paths relative to `directory` or names of files
+  /// that were sent: none of them is opened that resolve() does not take. Throws Error as
+  /// parse_scene() and resolve() do.
   Scene parse_scene(std::string_view json, const std::filesystem::path& directory) const;
   /// The scene in `path`, as resolve() has found it, or of the data in it. Throws Error.
   Scene open_scene(const std::filesystem::path& path) const;
 
  private:
+  std::filesystem::path resolve_in_scene(const std::filesystem::path& directory,
+                                         const std::string& path) const;
+
   Folder folder_;
   mutable std::mutex mutex_;
   std::set<std::filesystem::path> allowed_;  ///< canonical

@@ -42,6 +42,7 @@ std::string frame_message(const FrameHeader& header, std::string_view image) {
   append(out, header.height);
   append(out, std::bit_cast<std::uint32_t>(header.render_ms));
   append(out, std::bit_cast<std::uint32_t>(header.encode_ms));
+  append(out, static_cast<std::uint32_t>(image.size()));
   assert(out.size() == frame_header_bytes);
   out += image;
   return out;
@@ -62,7 +63,12 @@ std::optional<FrameHeader> parse_frame_header(std::string_view message) {
   header.height = take<std::uint32_t>(message);
   header.render_ms = std::bit_cast<float>(take<std::uint32_t>(message));
   header.encode_ms = std::bit_cast<float>(take<std::uint32_t>(message));
+  header.bytes = take<std::uint32_t>(message);
   return header;
+}
+
+bool is_whole(const FrameHeader& header, std::string_view message) {
+  return message.size() == frame_header_bytes + header.bytes;
 }
 
 }  // namespace motes::server

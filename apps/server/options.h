@@ -29,6 +29,9 @@ struct ServerOptions {
   std::string token;                  ///< that clients must know; empty: a random one
   std::size_t max_clients = 16;
   std::uint64_t max_upload_bytes = std::uint64_t{4} << 30;
+  std::uint64_t max_kept_bytes = std::uint64_t{16} << 30;  ///< of all uploads, on the disk
+  /// Of HTTP, and as many more that are refused.
+  double requests_per_second = 100, request_burst = 200;
   Timeouts timeouts;
 };
 

@@ -1,6 +1,7 @@
 // Where the studio puts what a client is to get.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 namespace motes::server {
@@ -13,6 +14,8 @@ class Outlet {
   virtual void send_text(std::string text) = 0;
   /// A frame_message(). One that has not left when the next comes is dropped for it.
   virtual void send_frame(std::string message) = 0;
+  /// What has not left yet of the frame of that number need not come any more.
+  virtual void recall_frame(std::uint32_t frame) = 0;
 };
 
 }  // namespace motes::server

@@ -8,10 +8,14 @@
 
 #include "core/error.h"
 #include "image/write_image.h"
+#include "server/counted.h"
 #include "server/studio.h"
 
 namespace motes::server {
 namespace {
+
+/// One is rendered while others wait, or are sent: such a file may be of gigabytes.
+constexpr std::size_t max_pictures = 4;
 
 /// An answer that another thread gives to a coroutine.
 class Awaited {
@@ -96,13 +100,18 @@ asio::awaitable<Answer> make_picture(const Target& target, asio::ip::tcp::socket
   } catch (const Error& error) {
     co_return text_answer(http::status::bad_request, error.what());
   }
+  if (site.num_pictures >= max_pictures) {
+    co_return text_answer(http::status::service_unavailable,
+                          "other pictures are being made: try again when they are done");
+  }
+  const auto counted = std::make_shared<Counted>(site.num_pictures);
   const auto awaited = std::make_shared<Awaited>(co_await asio::this_coro::executor);
   site.studio.picture(request, [awaited, name, format = request.format](
                                    std::optional<std::string> file, const std::string& error) {
     if (!file) {
       return Awaited::give(awaited, text_answer(http::status::unprocessable_entity, error));
     }
-    Answer answer{http::status::ok, mime_type(format), std::move(*file), {}};
+    Answer answer{http::status::ok, mime_type(format), std::move(*file)};
     answer.headers.emplace_back("Content-Disposition",
                                 fmt::format("attachment; filename=\"{}\"", name));
     Awaited::give(awaited, std::move(answer));
@@ -111,7 +120,9 @@ asio::awaitable<Answer> make_picture(const Target& target, asio::ip::tcp::socket
     studio.abandon(request);
     Awaited::give(awaited, {});
   });
-  co_return co_await awaited->wait();
+  Answer answer = co_await awaited->wait();
+  answer.hold = counted;
+  co_return answer;
 }
 
 }  // namespace motes::server

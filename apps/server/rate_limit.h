@@ -1,4 +1,4 @@
-// How many messages a client may send.
+// How many messages a client may send, and how many requests all of them.
 #pragma once
 
 #include <algorithm>
@@ -6,7 +6,7 @@
 
 namespace motes::server {
 
-/// A bucket of tokens, filled at a constant rate: each message takes one.
+/// A bucket of tokens, filled at a constant rate: each message or request takes one.
 class RateLimit {
  public:
   using Clock = std::chrono::steady_clock;

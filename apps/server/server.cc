@@ -23,7 +23,7 @@ constexpr auto farewell = 500ms;
 
 asio::ip::tcp::acceptor listen(asio::io_context& network, const ServerOptions& options) {
   try {
-    const asio::ip::tcp::endpoint endpoint(asio::ip::make_address(options.address), options.port);
+    const asio::ip::tcp::endpoint endpoint(listening_address(options.address), options.port);
     return {network, endpoint};
   } catch (const boost::system::system_error& error) {
     throw Error(fmt::format("{}:{}: cannot be listened on: {}", printable(options.address, 100),
@@ -96,12 +96,32 @@ std::uint16_t Server::port() const { return state_->acceptor.local_endpoint().po
 
 const std::string& Server::token() const { return state_->site.token; }
 
-std::string Server::url() const {
+std::string Server::greeting(std::string_view user, std::string_view machine) const {
   const auto address = state_->acceptor.local_endpoint().address();
-  const std::string host = address.is_unspecified() ? "localhost"
-                           : address.is_v6()        ? "[" + address.to_string() + "]"
-                                                    : address.to_string();
-  return fmt::format("http://{}:{}{}?token={}", host, port(), state_->options.base_url, token());
+  const auto page_at = [this](std::string_view host) {
+    return fmt::format("http://{}:{}{}?token={}", host, port(), state_->options.base_url, token());
+  };
+  const std::string own = address.is_v6() ? "[" + address.to_string() + "]" : address.to_string();
+  const bool everywhere = address.is_unspecified();
+  const std::string tunnel =
+      fmt::format("ssh -N -L {0}:{1}:{0} {2}{3}{4}", port(), everywhere ? "127.0.0.1" : own, user,
+                  user.empty() ? "" : "@", machine);
+  const std::string here = page_at(everywhere ? "localhost" : own);
+  if (address.is_loopback()) {
+    return fmt::format(
+        "Open in a browser:      {}\n"
+        "From another machine:   {}\n"
+        "                        and then the same address there\n",
+        here, tunnel);
+  }
+  return fmt::format(
+      "Open in a browser:      {}\n"
+      "From another machine:   {}\n"
+      "or, encrypted:          {}\n"
+      "                        and then {} there\n"
+      "Others in the network can reach port {}: the token keeps them out, but it and all else\n"
+      "travel unencrypted, so that who can listen in the network can learn it.\n",
+      here, everywhere ? page_at(machine) : here, tunnel, page_at("localhost"), port());
 }
 
 void Server::run() {

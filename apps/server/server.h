@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "server/options.h"
 
@@ -24,8 +25,9 @@ class Server {
   std::uint16_t port() const;
   /// What has to be known to use the server.
   const std::string& token() const;
-  /// The page's address, token and all.
-  std::string url() const;
+  /// What a user is told: the page's address, token and all, for this machine and for others, where
+  /// `user` reaches this one as `machine`; several lines.
+  std::string greeting(std::string_view user, std::string_view machine) const;
 
   /// Serves until stop().
   void run();

@@ -1,6 +1,11 @@
 // Two coroutines a socket: one reads, one writes what has been queued.
 #include "server/socket.h"
 
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <sys/socket.h>
+
+#include <string_view>
 #include <utility>
 #include <variant>
 
@@ -14,6 +19,8 @@ namespace {
 constexpr double messages_per_second = 300, message_burst = 600;
 /// A client that lets more than this wait is not listening.
 constexpr std::size_t max_waiting_bytes = std::size_t{16} << 20;
+/// Of a frame: between them it may be recalled. A slow line of 1 MB/s takes one in 66 ms.
+constexpr std::size_t block_bytes = std::size_t{1} << 16;
 
 websocket::stream_base::timeout of_stream(const Timeouts& timeouts) {
   websocket::stream_base::timeout out{};
@@ -35,6 +42,10 @@ Socket::Socket(beast::tcp_stream stream, ClientId id, const Timeouts& timeouts)
   beast::get_lowest_layer(stream_).expires_never();  // the WebSocket has its own timeouts
   stream_.set_option(of_stream(timeouts));
   stream_.read_message_max(max_message_bytes);
+  // What the system has taken cannot be recalled.
+  const int unsent = static_cast<int>(block_bytes);
+  setsockopt(beast::get_lowest_layer(stream_).socket().native_handle(), IPPROTO_TCP,
+             TCP_NOTSENT_LOWAT, &unsent, sizeof unsent);
 }
 
 asio::awaitable<void> Socket::run(const Request& request, Receiver& receiver) {
@@ -108,10 +119,17 @@ asio::awaitable<void> Socket::write_text(std::string text, boost::system::error_
 /// Only the client's word tells that a frame has arrived: the system takes much that nobody reads.
 asio::awaitable<void> Socket::write_frame(std::string frame, boost::system::error_code& error) {
   stream_.binary(true);
-  if (newest_frame_ <= acknowledged_) acknowledgement_.start(too_late());
   newest_frame_ = parse_frame_header(frame).value().frame;
-  co_await stream_.async_write(asio::buffer(frame),
-                               asio::redirect_error(asio::use_awaitable, error));
+  std::string_view rest = frame;
+  for (bool last = false; !last && !error;) {
+    if (recalled_ >= newest_frame_ && rest.size() < frame.size()) rest = {};
+    const std::string_view block = rest.substr(0, block_bytes);
+    rest.remove_prefix(block.size());
+    last = rest.empty();
+    if (newest_frame_ > acknowledged_) acknowledgement_.start(too_late());
+    co_await stream_.async_write_some(last, asio::buffer(block.data(), block.size()),
+                                      asio::redirect_error(asio::use_awaitable, error));
+  }
 }
 
 void Socket::acknowledged(std::uint32_t frame) {
@@ -144,6 +162,13 @@ void Socket::send_frame(std::string message) {
                self->frame_ = std::move(message);
                self->wake();
              });
+}
+
+void Socket::recall_frame(std::uint32_t frame) {
+  asio::post(stream_.get_executor(), [self = shared_from_this(), frame] {
+    self->recalled_ = frame;
+    if (self->frame_ && parse_frame_header(*self->frame_)->frame <= frame) self->frame_.reset();
+  });
 }
 
 void Socket::wake() { something_to_write_.cancel(); }

@@ -60,6 +60,7 @@ class Socket : public Outlet, public std::enable_shared_from_this<Socket> {
 
   void send_text(std::string text) override;
   void send_frame(std::string message) override;
+  void recall_frame(std::uint32_t frame) override;
 
  private:
   asio::awaitable<void> read_all(Receiver& receiver);
@@ -82,6 +83,7 @@ class Socket : public Outlet, public std::enable_shared_from_this<Socket> {
   std::deque<std::string> texts_;
   std::size_t text_bytes_ = 0;
   std::optional<std::string> frame_;
+  std::uint32_t recalled_ = 0;  ///< up to which frames are of no use any more
   std::optional<websocket::close_reason> close_reason_;
   asio::steady_timer something_to_write_;
   bool ended_ = false;

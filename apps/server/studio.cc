@@ -16,8 +16,8 @@ using namespace std::chrono_literals;
 
 /// A moving picture that has taken so long is not worth waiting for when there is a newer view.
 constexpr auto late = 120ms;
-/// Long work that was broken off so often is done to its end.
-constexpr int patience = 3;
+/// What insists may keep others waiting for so long.
+constexpr auto insistence = 1s;
 /// One ray a pixel meets balls, sticks and isosurfaces, and little light is traced.
 const FrameQuality preview{1, 1, 4, false, 0};
 
@@ -37,9 +37,11 @@ void Studio::stop() {
   loader_.cancel();
   lookahead_.cancel();
   if (thread_.joinable()) thread_.join();
+  if (encoding_) *encoding_->request.abandoned = true;
+  encoder_.reset();
   viewers_.clear();
   tasks_.clear();
-  long_tasks_.clear();
+  pictures_.clear();
 }
 
 void Studio::post(Task task, bool breaks_off) {
@@ -53,8 +55,9 @@ void Studio::post(Task task, bool breaks_off) {
 }
 
 void Studio::break_off_if_late() {
-  if (under_way_ == UnderWay::resting ||
-      (under_way_ == UnderWay::moving && Clock::now() - under_way_since_ > late)) {
+  const auto time = Clock::now() - under_way_since_;
+  if (under_way_ == UnderWay::resting || (under_way_ == UnderWay::moving && time > late) ||
+      (under_way_ == UnderWay::insisting && time > insistence)) {
     break_off_ = true;
   }
 }
@@ -112,7 +115,7 @@ void Studio::wait(Clock::time_point now) {
 
 bool Studio::begin(UnderWay what) {
   const std::lock_guard lock(mutex_);
-  if (ended_ || (what == UnderWay::resting && !tasks_.empty())) return false;
+  if (ended_ || (what != UnderWay::moving && !tasks_.empty())) return false;
   under_way_ = what;
   under_way_since_ = Clock::now();
   break_off_ = false;
@@ -173,25 +176,6 @@ void Studio::make_picture(Viewer& viewer, const FramePlan& plan) {
   }
 }
 
-bool Studio::do_long_task() {
-  if (long_tasks_.empty()) return false;
-  auto [task, broken_off] = std::move(long_tasks_.front());
-  long_tasks_.pop_front();
-  if (!begin(UnderWay::resting)) {
-    long_tasks_.emplace_front(std::move(task), broken_off);
-    return true;
-  }
-  bool done = true;
-  try {
-    done = task(broken_off < patience ? &break_off_ : nullptr);
-  } catch (const std::exception& error) {
-    send_to_all(error_text({}, error.what()));
-  }
-  end();
-  if (!done) long_tasks_.emplace_front(std::move(task), broken_off + 1);
-  return true;
-}
-
 void Studio::send_to_all(const std::string& text) {
   for (auto& [id, viewer] : viewers_) viewer.outlet().send_text(text);
 }
@@ -208,29 +192,6 @@ void Studio::send_scene(const SceneAnswer& answer) {
 
 void Studio::send_warnings(const Warnings& warnings) {
   if (!warnings.lines().empty()) send_to_all(warnings_text(warnings));
-}
-
-bool Studio::save_picture(const PictureRequest& request, const PictureAnswer& answer,
-                          const std::atomic<bool>* cancel) {
-  if (*request.abandoned) return true;
-  if (cancel == nullptr) cancel = request.abandoned.get();
-  const auto viewer = viewers_.find(request.client);
-  if (!document_ || viewer == viewers_.end()) {
-    answer({}, "there is nothing to be seen");
-    return true;
-  }
-  try {
-    Framebuffer image;
-    document_->render(viewer->second.camera(), request.width, request.height, {}, cancel, image);
-    const RenderSettings& settings = document_->scene().render;
-    answer(encode_image(request.format, image, settings.termination_opacity, settings.background),
-           "");
-  } catch (const Cancelled&) {
-    return *request.abandoned;
-  } catch (const std::exception& error) {  // Error, or not enough memory
-    answer({}, error.what());
-  }
-  return true;
 }
 
 }  // namespace motes::server

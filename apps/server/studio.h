@@ -5,6 +5,7 @@
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <memory>
@@ -12,6 +13,8 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "core/report.h"
 #include "document/document.h"
@@ -32,8 +35,9 @@ struct Opening {
   std::function<Scene()> scene;                ///< called on the loader's thread; throws Error
   std::optional<ClientId> client = {};         ///< who asked for it
   std::optional<std::uint32_t> sequence = {};  ///< by which "scene" message, if by one
-  /// Told what was wrong with it, on the studio's thread; may be null.
-  std::function<void(const std::string&)> failed = nullptr;
+  /// Told that nothing came of it, and what was wrong with it, unless it was cancelled, on the
+  /// studio's thread; may be null.
+  std::function<void(const std::optional<std::string>& error)> failed = nullptr;
 };
 
 /// A picture to be saved.
@@ -45,12 +49,13 @@ struct PictureRequest {
   std::shared_ptr<std::atomic<bool>> abandoned = std::make_shared<std::atomic<bool>>(false);
 };
 
-/// The picture's file, or nullopt and why there is none. Called on the studio's thread.
+/// The picture's file, or nullopt and why there is none. Called on one of the studio's threads.
 using PictureAnswer = std::function<void(std::optional<std::string> file, std::string error)>;
 
 /// All public functions are safe from any thread and return at once. One thread renders, for one
 /// client after the other: moving views first, then better pictures for those at rest, then what
-/// takes long. What clients do breaks off the work for those at rest, which is begun anew.
+/// takes long. What clients do breaks off the work for those at rest, which is begun anew, but for
+/// pictures to be saved, which go on.
 class Studio {
  public:
   Studio();
@@ -69,6 +74,8 @@ class Studio {
   void set_scene(ClientId client, std::uint32_t sequence, Scene scene);
   /// Opens something; what there is stays until it is ready.
   void open(Opening opening);
+  /// The files of what is shown and of what is being opened.
+  std::vector<std::filesystem::path> files_in_use();
   void picture(const PictureRequest& request, PictureAnswer answer);
   /// There may be no answer then.
   void abandon(const PictureRequest& request);
@@ -78,11 +85,24 @@ class Studio {
   using Task = std::function<void()>;
   using Viewers = std::map<ClientId, Viewer>;
 
-  /// Work that waits until nobody moves: true when it is done, false if it was broken off.
-  using LongTask = std::function<bool(const std::atomic<bool>* cancel)>;
+  /// What is being rendered, for those who may want to break it off: what was broken off too often
+  /// insists on some time.
+  enum class UnderWay { nothing, moving, resting, insisting };
 
-  /// What is being rendered, for those who may want to break it off.
-  enum class UnderWay { nothing, moving, resting };
+  /// A picture to be saved, on its way.
+  struct PictureJob {
+    PictureRequest request;
+    PictureAnswer answer;
+    std::uint64_t version = 0;  ///< of the scene; 0: not begun
+    Camera camera;
+    Framebuffer image;
+    std::vector<std::uint8_t> tiles_done;
+    int restarts = 0;  ///< since the scene was changed
+  };
+  struct WantedHistogram {
+    ClientId client = 0;
+    int broken_off = 0;
+  };
 
   /// Has the studio's thread do something, before the next picture.
   void post(Task task, bool breaks_off);
@@ -95,6 +115,7 @@ class Studio {
   bool run_tasks();
   /// Makes the picture that is wanted most; false: none is.
   bool make_next_picture(Clock::time_point now);
+  /// A histogram or a piece of a picture to be saved; false: nobody waits for any.
   bool do_long_task();
   void wait(Clock::time_point now);
   void make_picture(Viewer& viewer, const FramePlan& plan);
@@ -111,9 +132,16 @@ class Studio {
   void answer(ClientId client, Viewer& viewer, const Message& message);
   void change_scene(ClientId client, std::uint32_t sequence, const Scene& scene);
   void start_opening(const Opening& opening);
+  void end_opening(const Opening& opening, std::shared_ptr<Document> document,
+                   const std::optional<std::string>& error, const Warnings& warnings);
   void adopt(const Opening& opening, std::shared_ptr<Document> document, const Warnings& warnings);
-  bool save_picture(const PictureRequest& request, const PictureAnswer& answer,
-                    const std::atomic<bool>* cancel);
+  void make_histogram(Viewer& viewer, WantedHistogram& wanted);
+  /// Renders what is missing of the first picture, until that is broken off.
+  void go_on_with_picture();
+  bool prepare_picture(PictureJob& job);
+  void encode(std::shared_ptr<PictureJob> job);
+  /// The document is another one, or shows another scene.
+  void document_has_changed();
   void count_frames();
   void prefetch(std::uint64_t frame);
 
@@ -124,11 +152,15 @@ class Studio {
   Clock::time_point under_way_since_;
   std::atomic<bool> break_off_ = false;
   bool ended_ = false;
+  std::vector<std::filesystem::path> shown_files_, opening_files_;
 
   std::shared_ptr<Document> document_;  ///< null: nothing opened yet
   Viewers viewers_;
   ClientId last_served_ = 0;
-  std::deque<std::pair<LongTask, int>> long_tasks_;  ///< with how often they were broken off
+  std::uint64_t version_ = 0;  ///< of what the document shows
+  std::deque<WantedHistogram> histograms_;
+  std::deque<std::shared_ptr<PictureJob>> pictures_;
+  std::shared_ptr<PictureJob> encoding_;  ///< until it is done no other is begun: they may be large
   Framebuffer image_;
   RenderStatistics statistics_;
 
@@ -145,8 +177,9 @@ class Studio {
   std::string opening_error_;  ///< why there is no document, for those who connect later
   std::uint64_t opening_ = 0;  ///< counts openings: what an older one brings is dropped
 
-  Loader loader_;     ///< opens
-  Loader lookahead_;  ///< reads what may be wanted next
+  Loader loader_;                                 ///< opens
+  Loader lookahead_;                              ///< reads what may be wanted next
+  std::optional<Loader> encoder_{std::in_place};  ///< makes files of pictures
   std::thread thread_;
 };
 

@@ -29,7 +29,6 @@ void Studio::connect(ClientId client, std::shared_ptr<Outlet> outlet) {
   post(
       [this, client, outlet = std::move(outlet)] {
         Viewer& viewer = viewers_.emplace(client, outlet).first->second;
-        viewer.outlet().send_text(hello_text(client));
         if (document_) {
           viewer.look_anew(document_->camera());
           viewer.outlet().send_text(scene_text(*document_, frames_, {}));
@@ -74,60 +73,54 @@ void Studio::answer(ClientId client, Viewer& viewer, const Message& message) {
     if (document_) work();
   };
   std::visit(
-      Overloaded{[&](const SizeMessage& m) { viewer.resize(m.width, m.height); },
-                 [&](const ViewMessage& m) {
-                   viewer.took_view(m.sequence);
-                   if (viewer.following()) {
-                     viewer.follow({});
-                     send_clients();
-                   }
-                   look(client, m.camera, m.moving);
-                 },
-                 [&](const PickMessage& m) {
-                   only_with_document([&] {
-                     const auto hit = document_->pick(viewer.camera(), viewer.width(),
-                                                      viewer.height(), m.x, m.y);
-                     viewer.outlet().send_text(picked_text(m.sequence, hit));
-                   });
-                 },
-                 [&](const FitMessage&) {
-                   only_with_document([&] {
-                     const double aspect =
-                         viewer.width() > 0 ? static_cast<double>(viewer.width()) / viewer.height()
-                                            : 1;
-                     viewer.outlet().send_text(camera_text(client, document_->fit(aspect)));
-                   });
-                 },
-                 [&](const HistogramMessage&) {
-                   long_tasks_.emplace_back(
-                       [this, client](const std::atomic<bool>*) {
-                         const auto found = viewers_.find(client);
-                         if (found == viewers_.end() || !document_) return true;
-                         Viewer& v = found->second;
-                         v.outlet().send_text(histogram_text(document_->histogram(
-                             v.camera(), std::max(v.width(), 1), std::max(v.height(), 1))));
-                         return true;
-                       },
-                       0);
-                 },
-                 [&](const StatisticsMessage&) {
-                   only_with_document([&] {
-                     viewer.outlet().send_text(statistics_text(
-                         *document_, statistics_, viewer.encode_ms(), viewers_.size()));
-                   });
-                 },
-                 [&](const FollowMessage& m) {
-                   const auto followed = m.client ? viewers_.find(*m.client) : viewers_.end();
-                   const bool possible = followed != viewers_.end() && *m.client != client;
-                   viewer.follow(possible ? m.client : std::nullopt);
-                   if (possible) {
-                     viewer.look(followed->second.camera(), false, Clock::now());
-                     viewer.outlet().send_text(camera_text(*m.client, viewer.camera()));
-                   }
-                   send_clients();
-                 },
-                 [&](const CancelMessage&) { send_to_all(ready_text()); },
-                 [](const auto&) {}},  // what is about files does not come here
+      Overloaded{
+          [&](const SizeMessage& m) { viewer.resize(m.width, m.height); },
+          [&](const ViewMessage& m) {
+            viewer.took_view(m.sequence);
+            if (viewer.following()) {
+              viewer.follow({});
+              send_clients();
+            }
+            look(client, m.camera, m.moving);
+          },
+          [&](const PickMessage& m) {
+            only_with_document([&] {
+              const auto hit =
+                  document_->pick(viewer.camera(), viewer.width(), viewer.height(), m.x, m.y);
+              viewer.outlet().send_text(picked_text(m.sequence, hit));
+            });
+          },
+          [&](const FitMessage&) {
+            only_with_document([&] {
+              const double aspect =
+                  viewer.width() > 0 ? static_cast<double>(viewer.width()) / viewer.height() : 1;
+              viewer.outlet().send_text(camera_text(client, document_->fit(aspect)));
+            });
+          },
+          [&](const HistogramMessage&) {
+            const bool waits =
+                std::any_of(histograms_.begin(), histograms_.end(),
+                            [client](const WantedHistogram& h) { return h.client == client; });
+            if (!waits) histograms_.push_back({client});
+          },
+          [&](const StatisticsMessage&) {
+            only_with_document([&] {
+              viewer.outlet().send_text(
+                  statistics_text(*document_, statistics_, viewer.encode_ms(), viewers_.size()));
+            });
+          },
+          [&](const FollowMessage& m) {
+            const auto followed = m.client ? viewers_.find(*m.client) : viewers_.end();
+            const bool possible = followed != viewers_.end() && *m.client != client;
+            viewer.follow(possible ? m.client : std::nullopt);
+            if (possible) {
+              viewer.look(followed->second.camera(), false, Clock::now());
+              viewer.outlet().send_text(camera_text(*m.client, viewer.camera()));
+            }
+            send_clients();
+          },
+          [&](const CancelMessage&) { send_to_all(ready_text()); },
+          [](const auto&) {}},  // what is about files does not come here
       message);
 }
 
@@ -138,23 +131,6 @@ void Studio::look(ClientId client, const Camera& camera, bool moving) {
     viewer.look(camera, moving, now);
     if (id != client) viewer.outlet().send_text(camera_text(client, camera));
   }
-}
-
-void Studio::picture(const PictureRequest& request, PictureAnswer answer) {
-  post(
-      [this, request, answer = std::move(answer)] {
-        long_tasks_.emplace_back(
-            [this, request, answer](const std::atomic<bool>* cancel) {
-              return save_picture(request, answer, cancel);
-            },
-            0);
-      },
-      false);
-}
-
-void Studio::abandon(const PictureRequest& request) {
-  *request.abandoned = true;
-  post([] {}, true);
 }
 
 }  // namespace motes::server

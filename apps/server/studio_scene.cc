@@ -4,6 +4,7 @@
 
 #include "core/error.h"
 #include "server/answers.h"
+#include "server/files.h"
 #include "server/studio.h"
 
 namespace motes::server {
@@ -45,28 +46,61 @@ void Studio::start_opening(const Opening& opening) {
     Warnings warnings;
     const auto error = error_of([&] {
       progress.update("opening " + opening.name, 0);
+      Scene scene = opening.scene();
+      {
+        const std::lock_guard lock(mutex_);
+        opening_files_ = files_of(scene);
+      }
       document = std::make_shared<Document>(
-          Document::open(opening.name, opening.scene(), &progress, warnings));
+          Document::open(opening.name, std::move(scene), &progress, warnings));
     });
     post(
         [this, opening, number, document, warnings, error] {
-          if (number != opening_) return;  // something else has been asked for since
-          if (document) adopt(opening, document, warnings);
-          if (error && *error != cancelled_text) {
-            if (!document_) opening_error_ = *error;
-            if (opening.failed) opening.failed(*error);
-            send_to_all(error_text(opening.sequence, *error));
+          if (number == opening_) {
+            end_opening(opening, document, error, warnings);
+          } else if (opening.failed) {
+            opening.failed({});  // something else has been asked for since
           }
-          send_to_all(ready_text());
         },
         true);
   });
 }
 
+void Studio::end_opening(const Opening& opening, std::shared_ptr<Document> document,
+                         const std::optional<std::string>& error, const Warnings& warnings) {
+  {
+    const std::lock_guard lock(mutex_);
+    opening_files_.clear();
+  }
+  const bool cancelled = error == cancelled_text;
+  if (document) adopt(opening, std::move(document), warnings);
+  if (error && opening.failed) opening.failed(cancelled ? std::nullopt : error);
+  if (error && !cancelled) {
+    if (!document_) opening_error_ = *error;
+    send_to_all(error_text(opening.sequence, *error));
+  }
+  send_to_all(ready_text());
+}
+
+std::vector<std::filesystem::path> Studio::files_in_use() {
+  const std::lock_guard lock(mutex_);
+  std::vector<std::filesystem::path> files = shown_files_;
+  files.insert(files.end(), opening_files_.begin(), opening_files_.end());
+  return files;
+}
+
+void Studio::document_has_changed() {
+  ++version_;
+  const std::lock_guard lock(mutex_);
+  shown_files_ = files_of(document_->scene());
+}
+
 void Studio::adopt(const Opening& opening, std::shared_ptr<Document> document,
                    const Warnings& warnings) {
   document_ = std::move(document);
-  frames_.reset();
+  document_has_changed();
+  // Grids do not move.
+  frames_ = document_->info().particles == 0 ? std::optional<std::size_t>(1) : std::nullopt;
   if (!document_->info().path.empty()) {
     reader_ = std::make_shared<FrameReader>(document_->frame_reader());
   }
@@ -83,7 +117,7 @@ void Studio::adopt(const Opening& opening, std::shared_ptr<Document> document,
 }
 
 void Studio::count_frames() {
-  if (document_->info().path.empty() || document_->info().particles == 0) return;
+  if (frames_) return;
   lookahead_.add([this, reader = reader_, number = opening_](const std::atomic<bool>& cancelled) {
     LoadProgress progress([](std::string_view, double) {}, cancelled);
     if (error_of([&] { reader->count_frames(&progress); })) return;
@@ -128,6 +162,7 @@ void Studio::change_scene(ClientId client, std::uint32_t sequence, const Scene& 
   });
   if (progress.has_reported()) send_to_all(ready_text());
   if (error) return viewers_.at(client).outlet().send_text(error_text(sequence, *error));
+  document_has_changed();
   for (auto& [id, viewer] : viewers_) viewer.invalidate();
   viewers_.at(client).took_scene(sequence);
   send_scene({client, sequence});

@@ -1,15 +1,22 @@
 // A body of any size through a buffer of one.
 #include "server/upload.h"
 
+#include <fmt/format.h>
+
 #include <chrono>
+#include <cstdint>
+#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <system_error>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/error.h"
+#include "server/counted.h"
 #include "server/files.h"
+#include "server/studio.h"
 
 namespace motes::server {
 namespace {
@@ -17,46 +24,64 @@ namespace {
 constexpr std::size_t max_uploads = 4;  ///< at a time
 constexpr std::size_t block_bytes = std::size_t{1} << 18;
 
-/// A file that is removed unless it is kept.
+/// The files together have all the room there is.
+struct NoRoom : std::exception {};
+
+/// A file among the uploads, which is removed unless it is kept.
 class PartialFile {
  public:
-  explicit PartialFile(std::filesystem::path path)
-      : path_(std::move(path)), stream_(path_, std::ios::binary) {}
+  PartialFile(std::string_view name, Site& site)
+      : site_(site),
+        path_(site.files.with_uploads([name](Uploads& u) { return u.place_for(name); })),
+        stream_(path_, std::ios::binary) {}
   ~PartialFile() {
-    std::error_code ignored;
-    if (!kept_) std::filesystem::remove_all(path_.parent_path(), ignored);
+    if (!kept_) site_.files.with_uploads([this](Uploads& u) { u.remove(path_); });
   }
   PartialFile(const PartialFile&) = delete;
   PartialFile& operator=(const PartialFile&) = delete;
 
-  void write(const char* data, std::size_t size) {
-    if (!stream_.write(data, static_cast<std::streamsize>(size))) {
-      throw Error(path_, "cannot be written: is the disk full?");
+  /// Makes room for so many bytes to come. Throws NoRoom.
+  void expect(std::uint64_t bytes) {
+    if (bytes <= room_) return;
+    const auto in_use = site_.studio.files_in_use();
+    if (!site_.files.with_uploads(
+            [&](Uploads& u) { return u.grow(path_, bytes - room_, in_use); })) {
+      throw NoRoom();
     }
+    room_ = bytes;
+  }
+  void write(const char* data, std::size_t size) {
+    expect(size);
+    room_ -= size;
+    if (!stream_.write(data, static_cast<std::streamsize>(size))) fail();
   }
   void keep() {
     stream_.close();
-    if (!stream_) throw Error(path_, "cannot be written: is the disk full?");
+    if (!stream_) fail();
     kept_ = true;
+    site_.files.with_uploads([this](Uploads& u) { u.complete(path_); });
   }
+  const std::filesystem::path& path() const { return path_; }
 
  private:
+  [[noreturn]] void fail() const {
+    throw Error(path_.filename(), "cannot be written: is the server's disk full?");
+  }
+
+  Site& site_;
   std::filesystem::path path_;
   std::ofstream stream_;
+  std::uint64_t room_ = 0;  ///< for bytes to come
   bool kept_ = false;
 };
 
-/// Counts what is under way.
-class Counted {
- public:
-  explicit Counted(std::size_t& count) : count_(count) { ++count_; }
-  ~Counted() { --count_; }
-  Counted(const Counted&) = delete;
-  Counted& operator=(const Counted&) = delete;
-
- private:
-  std::size_t& count_;
-};
+std::string bytes_text(std::uint64_t bytes) {
+  constexpr double mebi = 1 << 20;
+  const double size = static_cast<double>(bytes) / mebi;
+  return size < 1      ? fmt::format("{} bytes", bytes)
+         : size < 1024 ? fmt::format("{:.3g} MiB", size)
+                       : fmt::format("{:.3g} GiB", size / 1024);
+}
 
 asio::awaitable<void> copy_body(http::request_parser<http::buffer_body>& parser,
                                 beast::tcp_stream& stream, beast::flat_buffer& buffer,
@@ -81,16 +106,19 @@ asio::awaitable<Answer> take_upload(const Target& target,
                                     beast::tcp_stream& stream, beast::flat_buffer& buffer,
                                     Site& site) {
   if (site.num_uploads >= max_uploads) {
-    co_return text_answer(http::status::service_unavailable, "too many uploads at a time");
+    co_return text_answer(http::status::service_unavailable, "too many files are sent at a time");
   }
   const Counted counted(site.num_uploads);
+  const Answer too_large = text_answer(http::status::payload_too_large,
+                                       fmt::format("the server takes no file of more than {}",
+                                                   bytes_text(site.options.max_upload_bytes)));
   if (const auto length = header.content_length();
       length && *length > site.options.max_upload_bytes) {
-    co_return text_answer(http::status::payload_too_large, "the file is too large");
+    co_return too_large;
   }
   try {
-    const std::filesystem::path place = site.files.place_for_upload(target.parameter("name"));
-    PartialFile file(place);
+    PartialFile file(target.parameter("name"), site);
+    if (const auto length = header.content_length()) file.expect(*length);
     http::request_parser<http::buffer_body> parser{std::move(header)};
     parser.body_limit(site.options.max_upload_bytes);
     if (parser.get()[http::field::expect] == "100-continue") {
@@ -99,16 +127,19 @@ asio::awaitable<Answer> take_upload(const Target& target,
     }
     co_await copy_body(parser, stream, buffer, file, site.options.timeouts.upload);
     file.keep();
-    const nlohmann::json path{{"path", place.string()}};
-    co_return Answer{http::status::ok,
-                     "application/json",
-                     path.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n",
-                     {}};
+    const nlohmann::json path{{"path", file.path().string()}};
+    co_return Answer{http::status::ok, "application/json",
+                     path.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n"};
   } catch (const Error& error) {
     co_return text_answer(http::status::bad_request, error.what());
   } catch (const boost::system::system_error& error) {
     if (error.code() != http::error::body_limit) throw;
-    co_return text_answer(http::status::payload_too_large, "the file is too large");
+    co_return too_large;
+  } catch (const NoRoom&) {
+    co_return text_answer(
+        http::status::insufficient_storage,
+        fmt::format("the files that the server keeps may have no more than {} together",
+                    bytes_text(site.options.max_kept_bytes)));
   }
 }
 

@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdlib>
+#include <iterator>
 #include <string>
 #include <system_error>
 
@@ -13,7 +15,7 @@ namespace motes::server {
 
 namespace fs = std::filesystem;
 
-Uploads::Uploads() {
+Uploads::Uploads(std::uint64_t max_bytes) : max_bytes_(max_bytes) {
   std::error_code error;
   std::string pattern = (fs::temp_directory_path(error) / "motes-view-XXXXXX").string();
   if (error || mkdtemp(pattern.data()) == nullptr) {
@@ -38,7 +40,55 @@ fs::path Uploads::place_for(std::string_view name) {
   std::error_code error;
   fs::create_directory(folder, error);
   if (error) throw Error(folder, "cannot make a folder: " + error.message());
-  return folder / fs::path(std::string(name));
+  files_.push_back({folder / fs::path(std::string(name))});
+  return files_.back().place;
+}
+
+bool Uploads::grow(const fs::path& place, std::uint64_t bytes,
+                   const std::vector<fs::path>& in_use) {
+  const auto may_go = [&in_use](const File& file) {
+    return file.complete && std::find(in_use.begin(), in_use.end(), file.place) == in_use.end();
+  };
+  std::uint64_t stay = 0;
+  for (const File& file : files_) stay += may_go(file) ? 0 : file.bytes;
+  if (bytes > max_bytes_ - stay) return false;
+  for (auto file = files_.begin(); bytes > max_bytes_ - bytes_;) {
+    file = may_go(*file) ? erase(file) : std::next(file);
+  }
+  bytes_ += bytes;
+  of(place)->bytes += bytes;
+  return true;
+}
+
+void Uploads::complete(const fs::path& place) { of(place)->complete = true; }
+
+void Uploads::remove(const fs::path& place) {
+  const auto file = of(place);
+  if (file != files_.end()) erase(file);
+}
+
+std::optional<fs::path> Uploads::find(std::string_view name) const {
+  const auto found = std::find_if(files_.rbegin(), files_.rend(), [name](const File& file) {
+    return file.complete && file.place.filename() == name;
+  });
+  return found == files_.rend() ? std::nullopt : std::optional(found->place);
+}
+
+bool Uploads::contains(const fs::path& place) const {
+  return std::any_of(files_.begin(), files_.end(),
+                     [&place](const File& file) { return file.place == place; });
+}
+
+std::list<Uploads::File>::iterator Uploads::of(const fs::path& place) {
+  return std::find_if(files_.begin(), files_.end(),
+                      [&place](const File& file) { return file.place == place; });
+}
+
+std::list<Uploads::File>::iterator Uploads::erase(std::list<File>::iterator file) {
+  bytes_ -= file->bytes;
+  std::error_code ignored;
+  fs::remove_all(file->place.parent_path(), ignored);
+  return files_.erase(file);
 }
 
 }  // namespace motes::server

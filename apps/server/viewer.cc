@@ -11,6 +11,13 @@
 
 namespace motes::server {
 
+namespace {
+
+/// A full picture that takes longer to arrive comes after one of all pixels that may take so long.
+constexpr double long_ms = 500;
+
+}  // namespace
+
 void Viewer::resize(int width, int height) {
   width_ = width;
   height_ = height;
@@ -21,11 +28,24 @@ void Viewer::look(const Camera& camera, bool moving, Clock::time_point now) {
   last_view_ = now;
   moving_ = moving;
   if (camera == camera_ && shown_ > 0) {
+    recall_final();
     shown_final_ = false;  // the page waits for a picture with the number of this view
     return;
   }
   camera_ = camera;
   invalidate();
+}
+
+void Viewer::invalidate() {
+  recall_final();
+  shown_ = 0;
+  shown_final_ = false;
+}
+
+void Viewer::recall_final() {
+  if (!shown_final_ || !link_.is_under_way(last_frame_)) return;
+  link_.recalled(last_frame_);
+  outlet_->recall_frame(last_frame_);
 }
 
 void Viewer::look_anew(const Camera& camera) {
@@ -37,12 +57,12 @@ void Viewer::look_anew(const Camera& camera) {
 std::optional<FramePlan> Viewer::next(Clock::time_point now) const {
   if (width_ == 0 || !link_.has_room()) return {};
   if (shown_ == 0) {
-    const auto pixels = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
-    return FramePlan{std::min(pace_.scale(), link_.scale(pixels)), true, false};
+    return FramePlan{std::min(pace_.scale(), link_.scale(num_pixels())), true, false};
   }
   if (is_moving(now) || shown_final_) return {};
   const double scale = std::min(1.0, 2 * shown_);
-  return FramePlan{scale, false, scale == 1};
+  const bool final = scale == 1 && (shown_ == 1 || link_.lossless_ms(num_pixels()) < long_ms);
+  return FramePlan{scale, false, final};
 }
 
 std::optional<Viewer::Clock::time_point> Viewer::next_change(Clock::time_point now) const {
@@ -60,8 +80,9 @@ void Viewer::send(const FramePlan& plan, const Framebuffer& image, double termin
   if (plan.final) {
     encoded = encode_png(shown, cancel);
     header.format = FrameFormat::png;
+    link_.encoded_lossless(pixels, encoded.size());
   } else {
-    const int quality = link_.quality(pixels);
+    const int quality = link_.quality(pixels, plan.moving ? Pace::budget_ms : long_ms);
     encoded = encode_jpeg(shown, quality);
     link_.encoded(pixels, encoded.size(), quality);
   }

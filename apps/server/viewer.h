@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -48,10 +49,7 @@ class Viewer {
   void took_scene(std::uint32_t sequence) { scene_sequence_ = sequence; }
   void follow(std::optional<ClientId> client) { following_ = client; }
   /// What is shown is no longer what there is.
-  void invalidate() {
-    shown_ = 0;
-    shown_final_ = false;
-  }
+  void invalidate();
   void acknowledged(std::uint32_t frame, Clock::time_point now) { link_.acknowledged(frame, now); }
 
   /// Whether its hand is on the view.
@@ -76,6 +74,12 @@ class Viewer {
   double encode_ms() const { return encode_ms_; }
 
  private:
+  std::size_t num_pixels() const {
+    return static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
+  }
+  /// The full picture, which is large, need not come any more if it has not yet.
+  void recall_final();
+
   std::shared_ptr<Outlet> outlet_;
   Camera camera_;
   int width_ = 0, height_ = 0;  ///< 0: not told yet

@@ -39,6 +39,19 @@ auto with_path(const std::filesystem::path& path, Work&& work) {
   }
 }
 
+/// Ends work that reports progress.
+class Cancellation : public Progress {
+ public:
+  explicit Cancellation(const std::atomic<bool>* cancel) : cancel_(cancel) {}
+
+  void update(std::string_view /*activity*/, double /*fraction*/) override {
+    if (cancel_ != nullptr && *cancel_) throw Cancelled();
+  }
+
+ private:
+  const std::atomic<bool>* cancel_;
+};
+
 /// Bins of equal width from low to high.
 std::vector<std::uint64_t> count_values(const std::vector<float>& values, double low, double high,
                                         bool logarithmic) {
@@ -301,7 +314,7 @@ Camera Document::fit(double aspect) const {
 
 void Document::render(const Camera& camera, int width, int height, const FrameQuality& quality,
                       const std::atomic<bool>* cancel, Framebuffer& image,
-                      RenderStatistics* statistics) const {
+                      RenderStatistics* statistics, std::vector<std::uint8_t>* tiles_done) const {
   ResolvedScene scene = resolved_;
   scene.camera = camera;
   scene.step_size *= quality.step_factor;
@@ -314,14 +327,17 @@ void Document::render(const Camera& camera, int width, int height, const FrameQu
   RenderOptions options;
   options.threads = quality.threads;
   options.cancel = cancel;
+  options.tiles_done = tiles_done;
   renderer_->render(scene, options, image, statistics);
 }
 
-std::vector<Histogram> Document::histogram(const Camera& camera, int width, int height) const {
+std::vector<Histogram> Document::histogram(const Camera& camera, int width, int height,
+                                           const std::atomic<bool>* cancel) const {
+  Cancellation cancellation(cancel);
   std::vector<RayProfiles> profiles;
   if (!sources_.empty()) {
     profiles =
-        sample_view(renderer_->kernels(), camera, width, height, nullptr, renderer_->grids());
+        sample_view(renderer_->kernels(), camera, width, height, &cancellation, renderer_->grids());
   }
   std::vector<Histogram> all;
   std::size_t number = 0;  // among the visible ones

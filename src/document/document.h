@@ -110,10 +110,12 @@ class Document {
 
   /// The picture from `camera`: linear, premultiplied, without the background. Throws Cancelled
   /// soon after `cancel`, which may be null, becomes true; Error for what cannot be rendered. The
-  /// image is then undefined.
+  /// image is then undefined. Where `tiles_done` is given (RenderOptions), the same picture of the
+  /// same scene goes on after it was cancelled.
   void render(const Camera& camera, int width, int height, const FrameQuality& quality,
               const std::atomic<bool>* cancel, Framebuffer& image,
-              RenderStatistics* statistics = nullptr) const;
+              RenderStatistics* statistics = nullptr,
+              std::vector<std::uint8_t>* tiles_done = nullptr) const;
 
   /// The particle that is seen at (x, y) of a picture, in pixels from the left top (the middle of
   /// the first is 0.5): along that ray, where half of its opacity lies in front. There it is the
@@ -122,8 +124,10 @@ class Document {
   /// 1 %, or no particle is there.
   std::optional<Pick> pick(const Camera& camera, int width, int height, double x, double y) const;
 
-  /// Of each field of scene(), in its order; of those that are not visible without values.
-  std::vector<Histogram> histogram(const Camera& camera, int width, int height) const;
+  /// Of each field of scene(), in its order; of those that are not visible without values. Throws
+  /// Cancelled soon after `cancel`, which may be null, becomes true.
+  std::vector<Histogram> histogram(const Camera& camera, int width, int height,
+                                   const std::atomic<bool>* cancel = nullptr) const;
 
   MemoryUse memory() const;
   const ParticleSet& particles() const { return particles_; }

@@ -21,10 +21,11 @@ ImageFormat image_format(const std::filesystem::path& path) {
 }
 
 std::string encode_image(ImageFormat format, const Framebuffer& framebuffer,
-                         double termination_opacity, const Color& background) {
+                         double termination_opacity, const Color& background,
+                         const std::atomic<bool>* cancel) {
   switch (format) {
     case ImageFormat::png:
-      return encode_png(to_display(framebuffer, termination_opacity, background));
+      return encode_png(to_display(framebuffer, termination_opacity, background), cancel);
     case ImageFormat::jpeg:
       return encode_jpeg(to_display(framebuffer, termination_opacity, background));
     case ImageFormat::exr:

@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "io/bytes.h"
 #include "io/format.h"
+#include "io/grid_format.h"
 #include "io/grid_reader.h"
 
 namespace motes {
@@ -68,13 +69,16 @@ const ForeignFormat* find_foreign_format(const std::filesystem::path& path, std:
   return found == table.end() ? nullptr : &*found;
 }
 
+/// Of particles, then those of grids alone.
 std::string known_formats() {
-  std::string list;
-  for (const Format& format : formats()) {
-    if (!list.empty()) list += ", ";
-    list += format.name;
+  std::vector<std::string_view> names;
+  for (const Format& format : formats()) names.push_back(format.name);
+  for (const GridFormat& format : grid_formats()) {
+    if (std::find(names.begin(), names.end(), format.name) == names.end()) {
+      names.push_back(format.name);
+    }
   }
-  return list;
+  return fmt::format("{}", fmt::join(names, ", "));
 }
 
 }  // namespace

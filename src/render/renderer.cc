@@ -237,21 +237,29 @@ void for_tiles(const ResolvedScene& scene, const RenderOptions& options, int til
   const int rows = (height + tile_size - 1) / tile_size;
   const int machine = tbb::info::default_concurrency();
   const int threads = options.threads > 0 ? options.threads : machine;
-  int done = 0;
+  const int tiles = columns * rows;
+  std::vector<std::uint8_t> own;
+  std::vector<std::uint8_t>& tile_done = options.tiles_done != nullptr ? *options.tiles_done : own;
+  if (tile_done.empty()) tile_done.assign(static_cast<std::size_t>(tiles), 0);
+  assert(tile_done.size() == static_cast<std::size_t>(tiles));
+  auto done = std::count(tile_done.begin(), tile_done.end(), 1);
   std::mutex mutex;
   // TBB starts no more threads than the machine has, unless it is told to.
   const tbb::global_control parallelism(tbb::global_control::max_allowed_parallelism,
                                         static_cast<std::size_t>(std::max(threads, machine)));
   tbb::task_arena arena(threads);
   arena.execute([&] {
-    tbb::parallel_for(0, columns * rows, [&](int i) {
+    tbb::parallel_for(0, tiles, [&](int i) {
+      std::uint8_t& this_done = tile_done[static_cast<std::size_t>(i)];
+      if (this_done != 0) return;
       throw_if_cancelled(options);
       const int x = i % columns * tile_size, y = i / columns * tile_size;
       work(Tile{x, y, std::min(tile_size, width - x), std::min(tile_size, height - y)});
       const std::lock_guard lock(mutex);
+      this_done = 1;
       ++done;
       if (options.progress != nullptr) {
-        options.progress->update("rendering", static_cast<double>(done) / (columns * rows));
+        options.progress->update("rendering", static_cast<double>(done) / tiles);
       }
     });
   });
@@ -265,7 +273,8 @@ bool any_colored(const std::vector<FieldSource>& fields) {
 /// A picture of surfaces alone, or of nothing.
 void draw_surfaces(const FrameSurfaces& surfaces, const ResolvedScene& scene,
                    const RenderOptions& options, Framebuffer& image, StageTicks& stages) {
-  std::fill(image.rgba.begin(), image.rgba.end(), 0.0f);
+  const bool goes_on = options.tiles_done != nullptr && !options.tiles_done->empty();
+  if (!goes_on) std::fill(image.rgba.begin(), image.rgba.end(), 0.0f);
   if (!surfaces.any()) return;
   StageClock clock(stages);
   for_tiles(scene, options, AreaBuffer::size, [&](const Tile& tile) {

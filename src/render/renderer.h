@@ -32,9 +32,12 @@ struct RenderOptions {
   /// to 32, in whole eights.
   std::optional<int> samples_per_pass = std::nullopt;
   Progress* progress = nullptr;
-  /// When it becomes true, render() soon throws Cancelled; the image is then undefined. May be
-  /// null.
+  /// When it becomes true, render() soon throws Cancelled; the image is then undefined, but for
+  /// the tiles that are done. May be null.
   const std::atomic<bool>* cancel = nullptr;
+  /// One entry a tile, true: it is done, and left as it is in the image; render() marks those that
+  /// it does, so that the same frame can go on after it was cancelled. Empty: none is. May be null.
+  std::vector<std::uint8_t>* tiles_done = nullptr;
   /// Surfaces in the way of rays through fields, in place of the renderer's own geometry; empty:
   /// that.
   LayerSource layers = {};

@@ -212,6 +212,7 @@ TEST_F(DocumentTest, CanBeCancelled) {
   const std::atomic<bool> cancel = true;
   Framebuffer image;
   EXPECT_THROW(document.render(document.camera(), 33, 33, {}, &cancel, image), Cancelled);
+  EXPECT_THROW(document.histogram(document.camera(), 33, 33, &cancel), Cancelled);
   struct : Progress {
     void update(std::string_view, double) override { throw Cancelled(); }
   } impatient;

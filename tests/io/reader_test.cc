@@ -20,7 +20,8 @@ TEST(OpenTrajectory, RefusesEmptyAndUnknownFiles) {
   EXPECT_THAT([&] { open_trajectory(empty.path(), {}); },
               ThrowsMessage<Error>(HasSubstr("is empty")));
   EXPECT_THAT([&] { open_trajectory(unknown.path(), {}); },
-              ThrowsMessage<Error>(HasSubstr("unknown format; expected one of")));
+              ThrowsMessage<Error>(AllOf(HasSubstr("unknown format; expected one of HDF5"),
+                                         HasSubstr("NRRD, VTI"))));
   EXPECT_THAT([&] { open_trajectory("/no/such/file", {}); },
               ThrowsMessage<Error>(HasSubstr("there is no such file")));
 }

@@ -2,9 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <random>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "core/error.h"
 #include "image/compare.h"
@@ -238,6 +244,40 @@ TEST(Renderer, OnePassGivesThePictureOfManyPasses) {
     visible = std::max(visible, static_cast<double>(many.rgba[i]));
   }
   EXPECT_GT(visible, 0.5);
+}
+
+/// Cancels in the midst of a frame.
+class CancelsHalfway : public Progress {
+ public:
+  void update(std::string_view, double fraction) override { cancel = fraction >= 0.5; }
+  std::atomic<bool> cancel = false;
+};
+
+TEST(Renderer, GoesOnWithAFrameThatWasCancelled) {
+  const ParticleSet particles = random_particles(500, 4);
+  ResolvedScene scene = scene_along_z(0.05, ramp);
+  scene.render.width = scene.render.height = 133;
+  const Renderer renderer(particles, {field_of_all(particles, 0.5f, 1, {2, 1})});
+  const Framebuffer whole = renderer.render(scene, {});
+  CancelsHalfway progress;
+  std::vector<std::uint8_t> done;
+  RenderOptions options;
+  options.progress = &progress;
+  options.cancel = &progress.cancel;
+  options.tiles_done = &done;
+  Framebuffer image;
+  EXPECT_THROW(renderer.render(scene, options, image), Cancelled);
+  const auto missing = std::find(done.begin(), done.end(), 0);
+  ASSERT_NE(missing, done.end());
+  ASSERT_EQ(done.front(), 1);
+  // What is done is not touched again.
+  const float before = std::exchange(image.pixel(0, 0)[0], 42.0f);
+  progress.cancel = false;
+  options.progress = nullptr;
+  renderer.render(scene, options, image);
+  EXPECT_EQ(image.pixel(0, 0)[0], 42.0f);
+  image.pixel(0, 0)[0] = before;
+  EXPECT_EQ(image, whole);
 }
 
 TEST(Renderer, CountsTheSamplesInTheBox) {

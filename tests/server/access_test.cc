@@ -1,12 +1,18 @@
 // Who is let in.
 #include "server/access.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/error.h"
 #include "server/target.h"
 
 namespace motes::server {
 namespace {
+
+using testing::HasSubstr;
+
+const asio::ip::address loopback = asio::ip::address_v4::loopback();
 
 TEST(Token, IsLongAndNeverTheSame) {
   const std::string token = make_token();
@@ -24,6 +30,28 @@ TEST(Token, IsComparedWhole) {
   EXPECT_FALSE(equal_in_constant_time("", "a"));
 }
 
+TEST(Token, OfTheUserIsLongAndPlain) {
+  EXPECT_NO_THROW(check_token("0123456789abcde~", "X"));
+  for (const char* token :
+       {"", "0123456789abcde", "0123456789abcdef&", "0123456789abcdef\xc3\xa4"}) {
+    try {
+      check_token(token, "MOTES_VIEW_TOKEN");
+      ADD_FAILURE() << token;
+    } catch (const Error& error) {
+      EXPECT_THAT(error.what(), HasSubstr("MOTES_VIEW_TOKEN: expected at least 16"));
+    }
+  }
+}
+
+TEST(ListeningAddress, IsOneOfIpOrLocalhost) {
+  EXPECT_EQ(listening_address("localhost"), loopback);
+  EXPECT_EQ(listening_address("0.0.0.0"), asio::ip::address_v4::any());
+  EXPECT_EQ(listening_address("[::1]"), asio::ip::address_v6::loopback());
+  for (const char* text : {"", "example.org", "1.2.3", "127.0.0.1:80"}) {
+    EXPECT_THROW(listening_address(text), Error) << text;
+  }
+}
+
 TEST(HostName, IsTakenFromAuthorities) {
   EXPECT_EQ(host_name("localhost:8080"), "localhost");
   EXPECT_EQ(host_name("LocalHost"), "localhost");
@@ -33,25 +61,40 @@ TEST(HostName, IsTakenFromAuthorities) {
 }
 
 TEST(HostNames, AreThoseOfTheMachineAlone) {
-  const HostNames names("127.0.0.1", {});
-  EXPECT_TRUE(names.accept("127.0.0.1:1234", ""));
-  EXPECT_TRUE(names.accept("localhost:1234", "http://localhost:1234"));
-  EXPECT_TRUE(names.accept("[::1]:1234", "http://[::1]:1234"));
-  EXPECT_FALSE(names.accept("", ""));
-  EXPECT_FALSE(names.accept("evil.com", ""));
-  EXPECT_FALSE(names.accept("evil.com:1234", "http://evil.com:1234"));
-  EXPECT_FALSE(names.accept("127.0.0.1.evil.com:1234", ""));
+  const HostNames names(loopback, {});
+  EXPECT_EQ(names.refusal("127.0.0.1:1234", ""), "");
+  EXPECT_EQ(names.refusal("localhost:1234", "http://localhost:1234"), "");
+  EXPECT_EQ(names.refusal("[::1]:1234", "http://[::1]:1234"), "");
+  EXPECT_NE(names.refusal("", ""), "");
+  EXPECT_NE(names.refusal("evil.com", ""), "");
+  EXPECT_NE(names.refusal("evil.com:1234", "http://evil.com:1234"), "");
+  EXPECT_NE(names.refusal("127.0.0.1.evil.com:1234", ""), "");
   // Another server of this machine is another origin.
-  EXPECT_FALSE(names.accept("localhost:1234", "http://localhost:4321"));
-  EXPECT_FALSE(names.accept("localhost:1234", "http://evil.com"));
-  EXPECT_FALSE(names.accept("localhost:1234", "null"));
+  EXPECT_NE(names.refusal("localhost:1234", "http://localhost:4321"), "");
+  EXPECT_NE(names.refusal("localhost:1234", "http://evil.com"), "");
+  EXPECT_NE(names.refusal("localhost:1234", "null"), "");
 }
 
 TEST(HostNames, ThatTheUserAddsAreProxies) {
-  const HostNames names("127.0.0.1", {"Portal.Example.org"});
-  EXPECT_TRUE(names.accept("portal.example.org", "https://portal.example.org"));
-  EXPECT_TRUE(names.accept("127.0.0.1:1234", "https://portal.example.org"));
-  EXPECT_FALSE(names.accept("127.0.0.1:1234", "https://example.org"));
+  const HostNames names(loopback, {"Portal.Example.org"});
+  EXPECT_EQ(names.refusal("portal.example.org", "https://portal.example.org"), "");
+  EXPECT_EQ(names.refusal("127.0.0.1:1234", "https://portal.example.org"), "");
+  EXPECT_NE(names.refusal("127.0.0.1:1234", "https://example.org"), "");
+}
+
+TEST(HostNames, OfAllAddressesAreTheMachinesNameAndAddresses) {
+  const HostNames names(asio::ip::address_v4::any(), {});
+  EXPECT_EQ(names.refusal(machine_name() + ":1234", ""), "");
+  EXPECT_EQ(names.refusal("192.168.3.4:1234", "http://192.168.3.4:1234"), "");
+  EXPECT_NE(names.refusal("192.168.3.4:1234", "http://192.168.3.5:1234"), "");
+  EXPECT_NE(HostNames(loopback, {}).refusal("192.168.3.4:1234", ""), "");
+}
+
+TEST(HostNames, ThatAreRefusedCanBeAdded) {
+  const HostNames names(loopback, {});
+  EXPECT_THAT(names.refusal("node7.cluster:1234", ""), HasSubstr("--host node7.cluster"));
+  EXPECT_THAT(names.refusal("127.0.0.1:1234", "https://portal.org"),
+              HasSubstr("--host portal.org"));
 }
 
 TEST(Target, IsDecoded) {

@@ -48,7 +48,7 @@ class FilesTest : public testing::Test {
 };
 
 TEST_F(FilesTest, InTheFolderAreTaken) {
-  const Files files(root_ / "shared");
+  const Files files(root_ / "shared", 1000);
   EXPECT_EQ(files.resolve("run.xyz"), root_ / "shared/run.xyz");
   EXPECT_EQ(files.resolve("sub/../run.xyz"), root_ / "shared/run.xyz");
   EXPECT_EQ(files.resolve("sub/a b.xyz"), root_ / "shared/sub/a b.xyz");
@@ -58,7 +58,7 @@ TEST_F(FilesTest, InTheFolderAreTaken) {
 }
 
 TEST_F(FilesTest, OutsideAreRefusedAsIfTheyWereNotThere) {
-  const Files files(root_ / "shared");
+  const Files files(root_ / "shared", 1000);
   for (const std::string& path :
        {std::string("../secret.xyz"), secret(), std::string("link.xyz"),
         std::string("up/secret.xyz"), std::string("sub/../../secret.xyz"),
@@ -86,7 +86,7 @@ TEST_F(FilesTest, AreListedWithoutWhatLeadsOut) {
 }
 
 TEST_F(FilesTest, OfScenesAreHeldToTheSame) {
-  const Files files(root_ / "shared");
+  const Files files(root_ / "shared", 1000);
   const fs::path shared = root_ / "shared";
   const Scene good = files.parse_scene(R"({"version":1,"data":{"path":"sub/a b.xyz"}})", shared);
   EXPECT_EQ(good.data_path, shared / "sub/a b.xyz");
@@ -110,7 +110,7 @@ TEST_F(FilesTest, OfScenesAreHeldToTheSame) {
 }
 
 TEST_F(FilesTest, ThatTheUserHasOpenedAreTaken) {
-  Files files(root_ / "shared");
+  Files files(root_ / "shared", 1000);
   Scene scene;
   scene.data_path = secret();
   files.allow(scene);
@@ -175,18 +175,54 @@ TEST_F(FilesTest, ThatReferToOthersElsewhereAreRefused) {
 TEST_F(FilesTest, ThatAreSentHaveAPlaceUntilTheEnd) {
   fs::path first, second;
   {
-    Files files(root_ / "shared");
-    first = files.place_for_upload("dir/../x.xyz");
-    second = files.place_for_upload("x.xyz");
+    Files files(root_ / "shared", 1000);
+    const auto place_for = [&files](std::string_view name) {
+      return files.with_uploads([name](Uploads& uploads) { return uploads.place_for(name); });
+    };
+    first = place_for("dir/../x.xyz");
+    second = place_for("x.xyz");
     EXPECT_EQ(first.filename(), "x.xyz");
     EXPECT_NE(first, second);
     std::ofstream(first) << "1\n";
     EXPECT_EQ(files.resolve(first.string()), first);
-    for (const char* name : {"", ".", "..", "a/", "/"}) {
-      EXPECT_THROW(files.place_for_upload(name), Error) << name;
-    }
+    // Scenes name them as their users do; what lies in the folder comes first.
+    const std::string sent = R"({"version":1,"data":{"path":"x.xyz"}})";
+    EXPECT_THROW(files.parse_scene(sent, root_ / "shared"), Error);  // it has not come whole yet
+    files.with_uploads([&](Uploads& uploads) { uploads.complete(first); });
+    EXPECT_EQ(files.parse_scene(sent, root_ / "shared").data_path, first);
+    write("shared/x.xyz");
+    EXPECT_EQ(files.parse_scene(sent, root_ / "shared").data_path, root_ / "shared/x.xyz");
+    for (const char* name : {"", ".", "..", "a/", "/"})
+      EXPECT_THROW(place_for(name), Error) << name;
   }
   EXPECT_FALSE(fs::exists(first));
+}
+
+TEST(Uploads, MakeRoomForNewOnesAndNoMore) {
+  Uploads uploads(100);
+  const auto send = [&uploads](const char* name, std::uint64_t bytes) {
+    const fs::path place = uploads.place_for(name);
+    std::ofstream(place) << "x";
+    EXPECT_TRUE(uploads.grow(place, bytes, {}));
+    uploads.complete(place);
+    return place;
+  };
+  const fs::path oldest = send("a", 40), older = send("b", 40), partial = uploads.place_for("c");
+  std::ofstream(partial) << "x";
+  // What is in use stays, and nothing goes where that would not help.
+  EXPECT_FALSE(uploads.grow(partial, 70, {oldest}));
+  EXPECT_TRUE(fs::exists(older));
+  EXPECT_TRUE(uploads.grow(partial, 50, {oldest}));
+  EXPECT_TRUE(fs::exists(oldest));
+  EXPECT_FALSE(fs::exists(older.parent_path()));
+  // So does what is being sent.
+  EXPECT_FALSE(uploads.grow(uploads.place_for("d"), 60, {}));
+  EXPECT_TRUE(uploads.grow(partial, 50, {}));
+  EXPECT_FALSE(fs::exists(oldest));
+  EXPECT_FALSE(uploads.grow(partial, 1, {}));
+  uploads.remove(partial);
+  EXPECT_FALSE(fs::exists(partial));
+  send("e", 100);
 }
 
 }  // namespace

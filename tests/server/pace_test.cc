@@ -58,6 +58,22 @@ TEST(Link, HasRoomForTwo) {
   EXPECT_TRUE(link.has_room());
 }
 
+TEST(Link, HasRoomForWhatWasRecalled) {
+  Link link;
+  const auto now = Link::Clock::now();
+  link.sent(1, 1000, now);
+  link.sent(2, 5000000, now);
+  link.recalled(2);
+  EXPECT_TRUE(link.has_room());
+  EXPECT_TRUE(link.is_under_way(2));
+  link.sent(3, 400000, now);
+  EXPECT_FALSE(link.has_room());
+  link.acknowledged(3, now + 400ms);
+  EXPECT_FALSE(link.is_under_way(2));
+  link.encoded_lossless(1000, 1000);
+  EXPECT_NEAR(link.lossless_ms(1000), 1, 0.01);  // the 5 MB have not come in these 400 ms
+}
+
 /// A link of so many bytes a millisecond, after some frames of two million pixels.
 Link link_of(double bytes_per_ms) {
   Link link;
@@ -72,18 +88,26 @@ Link link_of(double bytes_per_ms) {
 }
 
 TEST(Link, KeepsTheQualityWhereItIsFast) {
-  EXPECT_EQ(link_of(100000).quality(2000000), 90);
+  EXPECT_EQ(link_of(100000).quality(2000000, Pace::budget_ms), 90);
   EXPECT_EQ(link_of(100000).scale(2000000), 1);
 }
 
 TEST(Link, GivesUpQualityThenSize) {
   const Link slow = link_of(5000);  // 225 kB in the budget
-  EXPECT_LT(slow.quality(2000000), 90);
+  EXPECT_LT(slow.quality(2000000, Pace::budget_ms), 90);
   EXPECT_EQ(slow.scale(2000000), 1);
   const Link very_slow = link_of(500);
-  EXPECT_EQ(very_slow.quality(2000000), 40);
+  EXPECT_EQ(very_slow.quality(2000000, Pace::budget_ms), 40);
   EXPECT_LT(very_slow.scale(2000000), 0.6);
   EXPECT_GT(very_slow.scale(2000000), 0.3);
+}
+
+TEST(Link, KnowsHowLongAFullPictureTakes) {
+  EXPECT_EQ(Link().lossless_ms(2000000), 0);
+  Link link = link_of(1000);
+  link.encoded_lossless(2000000, 3000000);
+  EXPECT_NEAR(link.lossless_ms(1000000), 1500, 50);
+  EXPECT_GT(link.quality(2000000, 500), link.quality(2000000, Pace::budget_ms));
 }
 
 }  // namespace

@@ -75,7 +75,8 @@ inline Reply request(const RunningServer& server, http::verb method, const std::
 /// A page that looks at the atoms.
 class TestClient : public Client {
  public:
-  explicit TestClient(const RunningServer& server) : Client(server.port(), server.token()) {}
+  explicit TestClient(const RunningServer& server, std::optional<int> receive_buffer = {})
+      : Client(server.port(), server.token(), receive_buffer) {}
 
   /// From the side by `x`.
   void look(std::uint32_t sequence, double x, bool moving) {

@@ -11,7 +11,9 @@
 #include <string>
 #include <vector>
 
+#include "server/files.h"
 #include "server/running_server.h"
+#include "server/studio.h"
 
 namespace motes::server {
 namespace {
@@ -39,6 +41,34 @@ TEST(Server, KnowsItsNamesAndItsOwnPages) {
   EXPECT_EQ(request(server, http::verb::get, page).status, 200);
   EXPECT_EQ(request(server, http::verb::get, page, "", "evil.com").status, 403);
   EXPECT_EQ(request(server, http::verb::get, page, "", "127.0.0.1", "http://evil.com").status, 403);
+}
+
+TEST(Server, TellsHowToReachIt) {
+  const auto told = [](const std::string& address) {
+    Studio studio;
+    Files files("/", 0);
+    ServerOptions options;
+    options.address = address;
+    options.token = "abcdefghijklmnop";
+    const Server server(options, studio, files);
+    const std::string port = std::to_string(server.port());
+    std::string text = server.greeting("me", "node");
+    for (auto at = text.find(port); at != text.npos; at = text.find(port)) {
+      text.replace(at, port.size(), "PORT");
+    }
+    return text;
+  };
+  for (const std::string address : {"127.0.0.1", "localhost"}) {
+    const std::string text = told(address);
+    EXPECT_THAT(text, HasSubstr("http://127.0.0.1:PORT/?token=abcdefghijklmnop\n"));
+    EXPECT_THAT(text, HasSubstr("ssh -N -L PORT:127.0.0.1:PORT me@node\n"));
+    EXPECT_THAT(text, testing::Not(HasSubstr("network")));
+  }
+  const std::string open = told("0.0.0.0");
+  EXPECT_THAT(open, HasSubstr("http://localhost:PORT/?token=abcdefghijklmnop\n"));
+  EXPECT_THAT(open, HasSubstr("http://node:PORT/?token=abcdefghijklmnop\n"));
+  EXPECT_THAT(open, HasSubstr("ssh -N -L PORT:127.0.0.1:PORT me@node\n"));
+  EXPECT_THAT(open, HasSubstr("Others in the network can reach port PORT"));
 }
 
 TEST(Server, GivesThePageUnderAStrictPolicy) {
@@ -178,6 +208,47 @@ TEST(Server, TakesUploadsUpToItsLimit) {
   while (scene.at("data").at("particles") != 1) scene = client.wait_for("scene");
 }
 
+TEST(Server, KeepsNoUploadThatItCannotOpenAndNotMoreThanItsLimit) {
+  ServerOptions options;
+  options.max_kept_bytes = 100;
+  const RunningServer server(options);
+  const std::string upload = "/upload?name=sent.xyz&token=" + server.token();
+  EXPECT_EQ(request(server, http::verb::post, upload, std::string(101, 'x')).status, 507);
+  TestClient client(server);
+  const auto open = [&](const std::string& body) -> std::filesystem::path {
+    const std::string path =
+        nlohmann::json::parse(request(server, http::verb::post, upload, body).body).at("path");
+    client.send(nlohmann::json{{"type", "open"}, {"path", path}}.dump());
+    return path;
+  };
+  const auto bad = open("no particles");
+  client.wait_for("error");
+  EXPECT_FALSE(std::filesystem::exists(bad));
+  const auto good = open("1\n\nC 0 0 0\n");
+  while (client.wait_for("scene").at("data").at("particles") != 1) {
+  }
+  // It is shown: no other takes its place.
+  EXPECT_EQ(request(server, http::verb::post, upload, std::string(99, 'x')).status, 507);
+  EXPECT_TRUE(std::filesystem::exists(good));
+  client.send(R"({"type":"open","path":"other.xyz"})");
+  while (client.wait_for("scene").at("data").at("particles") != 2) {
+  }
+  EXPECT_EQ(request(server, http::verb::post, upload, std::string(99, 'x')).status, 200);
+  EXPECT_FALSE(std::filesystem::exists(good));
+}
+
+TEST(Server, AnswersSoManyRequestsAndStrangersKeepNobodyOut) {
+  ServerOptions options;
+  options.requests_per_second = 1e-3;
+  options.request_burst = 2;
+  const RunningServer server(options);
+  const auto status = [&server](const std::string& token) {
+    return request(server, http::verb::get, "/?token=" + token).status;
+  };
+  for (const int expected : {403, 403, 429}) EXPECT_EQ(status("wrong"), expected);
+  for (const int expected : {200, 200, 429}) EXPECT_EQ(status(server.token()), expected);
+}
+
 TEST(Server, SaysWhatIsWrongWithASceneAndKeepsTheOldOne) {
   const RunningServer server;
   TestClient client(server);
@@ -194,6 +265,7 @@ TEST(Server, SaysWhatIsWrongWithASceneAndKeepsTheOldOne) {
 
 TEST(Server, OutlivesThousandClientsThatComeAndGo) {
   ServerOptions options;
+  options.request_burst = 2000;
   options.max_clients = 1001;  // of some it may not have heard yet that they have gone
   const RunningServer server(options);
   TestClient client(server);

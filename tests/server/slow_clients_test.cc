@@ -1,13 +1,16 @@
 // Clients that keep the server waiting.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <boost/asio/read.hpp>
 #include <boost/asio/write.hpp>
 #include <chrono>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "server/running_server.h"
 
@@ -149,6 +152,65 @@ TEST(SlowClients, ThatAcknowledgeAreKept) {
   client.look(1, 1, false);
   while (client.wait_for_final().header.view_sequence != 1) {
   }
+}
+
+TEST(SlowClients, GetNoFullPictureThatIsOutdatedOnTheWay) {
+  const RunningServer server;
+  TestClient slow(server, 4096), other(server);
+  other.wait_for("scene");
+  other.send(R"({"type":"follow","client":1})");
+  slow.set_size(1536, 1536);
+  // Pictures to be saved come last: by then the full one waits for the client to read.
+  const Reply saved =
+      request(server, http::verb::get,
+              "/picture?client=1&width=8&height=8&format=png&token=" + server.token());
+  EXPECT_EQ(saved.status, 200);
+  slow.look(1, 1, false);
+  other.wait_for("camera");
+  other.wait_for("camera");
+  bool recalled = false;
+  for (bool done = false; !done;) {
+    const std::string message = slow.read().value();
+    const auto header = parse_frame_header(message);
+    if (!header) continue;
+    slow.acknowledge(header->frame);
+    if (header->final && header->view_sequence == 0) {
+      EXPECT_GT(header->bytes, 300'000U);  // or the system has taken it before
+      EXPECT_FALSE(is_whole(*header, message));
+      recalled = true;
+    }
+    done = header->final && header->view_sequence == 1;
+    EXPECT_TRUE(!done || is_whole(*header, message));
+  }
+  EXPECT_TRUE(recalled);
+}
+
+TEST(SlowClients, LetFewPicturesWaitForThem) {
+  const RunningServer server;
+  TestClient client(server);
+  client.wait_for("scene");
+  const auto target = [&server](int side) {
+    return fmt::format("/picture?client=1&width={0}&height={0}&format=npy&token={1}", side,
+                       server.token());
+  };
+  const auto becomes = [&](int status) {
+    const auto deadline = Clock::now() + very_long;
+    while (request(server, http::verb::get, target(4)).status != status) {
+      if (Clock::now() > deadline) return false;
+      std::this_thread::sleep_for(20ms);
+    }
+    return true;
+  };
+  {
+    std::vector<std::unique_ptr<RawConnection>> deaf;
+    for (int i = 0; i < 4; ++i) {
+      deaf.push_back(std::make_unique<RawConnection>(server));
+      // More than the system keeps for them.
+      deaf.back()->send("GET " + target(1024) + " HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n");
+    }
+    EXPECT_TRUE(becomes(503));
+  }
+  EXPECT_TRUE(becomes(200));
 }
 
 TEST(SlowClients, ThatTalkAndReadNothingAreLeft) {

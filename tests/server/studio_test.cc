@@ -11,6 +11,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/error.h"
 #include "document/document.h"
@@ -36,6 +37,7 @@ class EagerOutlet : public Outlet {
     image_ = message.substr(frame_header_bytes);
     changed_.notify_all();
   }
+  void recall_frame(std::uint32_t /*frame*/) override {}
   /// Waits for the full picture of that view; "": it took too long.
   std::string wait_for_final(std::uint32_t view) {
     std::unique_lock lock(mutex_);
@@ -127,6 +129,7 @@ class TextOutlet : public Outlet {
     changed_.notify_all();
   }
   void send_frame(std::string /*message*/) override {}
+  void recall_frame(std::uint32_t /*frame*/) override {}
   bool hears(const std::string& part) {
     std::unique_lock lock(mutex_);
     return changed_.wait_for(lock, std::chrono::seconds(60),
@@ -139,12 +142,107 @@ class TextOutlet : public Outlet {
   std::string texts_;
 };
 
+TEST(Studio, ShowsFramesWhileAPictureIsMade) {
+  OpenStudio open(16);
+  Studio& studio = open.studio;
+  const PictureRequest huge{1, 5000, 5000};
+  std::atomic<bool> made = false;
+  studio.picture(huge, [&](const auto&, const auto&) { made = true; });
+  Camera camera;
+  camera.target = {20, 20, 20};
+  for (std::uint32_t view = 1; view <= 10; ++view) {  // more than it can be patient with
+    camera.eye = {20.0 + view, 20, 120};
+    studio.handle(1, ViewMessage{view, camera, false});
+    EXPECT_NE(open.outlet->wait_for_final(view), "");
+  }
+  EXPECT_FALSE(made);
+  studio.abandon(huge);
+}
+
+TEST(Studio, FinishesPicturesThatAreBrokenOff) {
+  OpenStudio open(16);
+  Studio& studio = open.studio;
+  Camera camera;
+  camera.target = {20, 20, 20};
+  camera.eye = {21, 20, 120};
+  studio.handle(1, ViewMessage{1, camera, false});
+  EXPECT_NE(open.outlet->wait_for_final(1), "");
+  const std::string expected = picture_of(open.scene, camera, 400, 400);
+  std::promise<std::string> made;
+  studio.picture({1, 400, 400}, [&](const std::optional<std::string>& file, const std::string&) {
+    made.set_value(file.value());
+  });
+  auto picture = made.get_future();
+  Camera other = camera;
+  for (std::uint32_t view = 2;
+       picture.wait_for(std::chrono::milliseconds(20)) != std::future_status::ready; ++view) {
+    other.eye.y += 1;
+    studio.handle(1, ViewMessage{view, other, false});
+  }
+  EXPECT_EQ(picture.get(), expected);
+}
+
+/// A client to which a full picture takes for ever.
+class SlowOutlet : public Outlet {
+ public:
+  explicit SlowOutlet(Studio& studio) : studio_(studio) {}
+
+  void send_text(std::string /*text*/) override {}
+  void send_frame(std::string message) override {
+    const FrameHeader header = parse_frame_header(message).value();
+    if (!header.final) studio_.handle(1, AckMessage{header.frame});
+    const std::lock_guard lock(mutex_);
+    last_ = header;
+    changed_.notify_all();
+  }
+  void recall_frame(std::uint32_t frame) override {
+    const std::lock_guard lock(mutex_);
+    recalled_.push_back(frame);
+  }
+  /// The number of the full picture of that view.
+  std::uint32_t wait_for_final(std::uint32_t view) {
+    std::unique_lock lock(mutex_);
+    EXPECT_TRUE(changed_.wait_for(lock, std::chrono::seconds(60),
+                                  [&] { return last_.final && last_.view_sequence == view; }));
+    return last_.frame;
+  }
+  std::vector<std::uint32_t> recalled() {
+    const std::lock_guard lock(mutex_);
+    return recalled_;
+  }
+
+ private:
+  Studio& studio_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  FrameHeader last_;
+  std::vector<std::uint32_t> recalled_;
+};
+
+TEST(Studio, RecallsFullPicturesThatAreOutdated) {
+  Studio studio;
+  const auto outlet = std::make_shared<SlowOutlet>(studio);
+  studio.open({"zeolite", [] { return open_scene(zeolite); }});
+  studio.connect(1, outlet);
+  studio.handle(1, SizeMessage{32, 32});
+  std::vector<std::uint32_t> outdated;
+  Camera camera;
+  camera.target = {20, 20, 20};
+  for (std::uint32_t view = 1; view <= 5; ++view) {  // more than may be under way
+    camera.eye = {20.0 + view, 20, 120};
+    studio.handle(1, ViewMessage{view, camera, false});
+    const std::uint32_t frame = outlet->wait_for_final(view);
+    EXPECT_EQ(outlet->recalled(), outdated);
+    outdated.push_back(frame);
+  }
+}
+
 TEST(Studio, TellsWhoComesLaterWhyNothingIsOpen) {
   Studio studio;
   std::promise<std::string> failed;
   studio.open({.name = "nothing",
                .scene = []() -> Scene { throw Error("it is not there"); },
-               .failed = [&](const std::string& error) { failed.set_value(error); }});
+               .failed = [&](const auto& error) { failed.set_value(error.value()); }});
   EXPECT_EQ(failed.get_future().get(), "it is not there");
   const auto outlet = std::make_shared<TextOutlet>();
   studio.connect(1, outlet);

@@ -81,7 +81,7 @@ test("opens a file of the folder", async ({ screen, view }) => {
   await expect(slider).toHaveAttribute("max", "9");
 });
 
-test("takes a file that is sent to it", async ({ screen, view }) => {
+test("takes a file that is sent to it", async ({ screen, view, folder }) => {
   const { page } = screen;
   await screen.open(await view([`${demo}/silica.json`]));
   await page.keyboard.press("Control+o");
@@ -89,6 +89,33 @@ test("takes a file that is sent to it", async ({ screen, view }) => {
   await expect(page).toHaveTitle(/zeolite_mfi_3494/, { timeout: 60_000 });
   await screen.atRest();
   await expect(screen.canvas).toHaveAccessibleName(/3494 particles/);
+  // What is kept of it works beside the user's own file, and here.
+  const { path, scene } = await screen.savedScene();
+  expect(scene.data.path).toBe("zeolite_mfi_3494.xyz");
+  copyFileSync(path, join(folder, "scene.json"));
+  copyFileSync(zeolite, join(folder, "zeolite_mfi_3494.xyz"));
+  renderScene(join(folder, "scene.json"), join(folder, "rendered.png"));
+  const rendered = readFileSync(join(folder, "rendered.png"));
+  expect((await screen.picture()).equals(rendered)).toBe(true);
+  await page.getByRole("button", { name: "zeolite_mfi_3494.xyz" }).click();
+  scene.render.background = "#ffffff";
+  writeFileSync(join(folder, "scene.json"), JSON.stringify(scene));
+  await screen.change(() =>
+    page.getByLabel("File from this computer").setInputFiles(join(folder, "scene.json")),
+  );
+  expect((await screen.savedScene()).scene.render.background).toBe("#ffffff");
+});
+
+test("names a file that was sent as its user does", async ({ screen, view, folder }) => {
+  const { page } = screen;
+  await screen.open(await view([zeolite]));
+  const broken = join(folder, "broken.xyz");
+  writeFileSync(broken, "3\n\nC 0 0 0\n");
+  await page.keyboard.press("Control+o");
+  await page.getByLabel("File from this computer").setInputFiles(broken);
+  const status = page.getByRole("status").filter({ hasText: "broken.xyz:" });
+  await expect(status).toBeVisible();
+  await expect(status).not.toContainText("/");
 });
 
 test("takes a scene that is dropped on it", async ({ screen, view }) => {

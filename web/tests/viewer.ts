@@ -84,7 +84,7 @@ export class Screen {
       this.pictures.clear();
       socket.on("framereceived", ({ payload }) => {
         if (typeof payload === "string" || payload.readUInt16LE(18) !== 1) return;
-        this.pictures.set(payload.readUInt32LE(4), Buffer.from(payload.subarray(36)));
+        this.pictures.set(payload.readUInt32LE(4), Buffer.from(payload.subarray(40)));
       });
     });
   }

@@ -73,6 +73,7 @@ std::optional<server::ReceivedFrame> Hand::next_frame(Clock::time_point deadline
     const auto header = server::parse_frame_header(*message);
     if (header) {
       client_.acknowledge(header->frame);
+      if (!server::is_whole(*header, *message)) continue;
       return server::ReceivedFrame{*header, message->substr(server::frame_header_bytes)};
     }
     const nlohmann::json text = nlohmann::json::parse(*message);

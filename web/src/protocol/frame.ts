@@ -1,7 +1,7 @@
-// The binary message of one picture: a header of 36 bytes, then JPEG or PNG.
+// The binary message of one picture: a header of 40 bytes, then JPEG or PNG.
 
 const magic = 0x3146544d; // "MTF1"
-const headerBytes = 36;
+const headerBytes = 40;
 
 export interface Frame {
   id: number;
@@ -17,15 +17,18 @@ export interface Frame {
   renderMs: number;
   encodeMs: number;
   image: Uint8Array<ArrayBuffer>;
+  /** Not all of the image has come: the server has recalled it, as something newer is to be shown. */
+  recalled: boolean;
 }
 
 /** Null for what is no such message. */
 export function parseFrame(message: ArrayBuffer): Frame | null {
-  if (message.byteLength <= headerBytes) return null;
+  if (message.byteLength < headerBytes) return null;
   const view = new DataView(message);
   if (view.getUint32(0, true) !== magic) return null;
   const format = view.getUint16(16, true);
   if (format > 1) return null;
+  const bytes = view.getUint32(36, true);
   return {
     id: view.getUint32(4, true),
     viewSequence: view.getUint32(8, true),
@@ -37,5 +40,6 @@ export function parseFrame(message: ArrayBuffer): Frame | null {
     renderMs: view.getFloat32(28, true),
     encodeMs: view.getFloat32(32, true),
     image: new Uint8Array(message, headerBytes),
+    recalled: message.byteLength < headerBytes + bytes,
   };
 }

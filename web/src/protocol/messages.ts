@@ -85,6 +85,8 @@ export type ServerMessage =
       protocol: number;
       version: string;
       client: number;
+      /** Folder of the files that were sent to the server, each in a numbered one. */
+      uploads: string;
       color_maps: Record<string, string[]>;
       styles: string[];
       engines: string[];

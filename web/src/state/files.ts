@@ -4,9 +4,10 @@ import { address } from "../protocol/address";
 import { onMessage, send } from "../protocol/connection";
 import type { FolderEntry } from "../protocol/messages";
 import type { Scene } from "../protocol/scene";
+import { plainNames, withPlainNames } from "../scene/sent_files";
 import { renderLine, sceneText } from "../scene/shell_line";
 import { data, loadScene, presentScene } from "./document";
-import { notify } from "./notices";
+import { notify, sentFolder } from "./notices";
 import { hello } from "./session";
 
 export const listing = signal<{ path: string; entries: FolderEntry[] } | null>(null);
@@ -35,8 +36,14 @@ export function saveBlob(blob: Blob, name: string): void {
   setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
 }
 
-export function saveScene(): void {
+/** What is shown, for the command line. */
+function sceneToKeep(): Scene | null {
   const scene = presentScene();
+  return scene && withPlainNames(scene, sentFolder.peek());
+}
+
+export function saveScene(): void {
+  const scene = sceneToKeep();
   if (!scene) return;
   saveBlob(
     new Blob([`${sceneText(scene)}\n`], { type: "application/json" }),
@@ -45,7 +52,7 @@ export function saveScene(): void {
 }
 
 export function presentRenderLine(): string {
-  const scene = presentScene();
+  const scene = sceneToKeep();
   return scene ? renderLine(scene, `${baseName.value}.png`) : "";
 }
 
@@ -57,7 +64,10 @@ export async function fetchPicture(
 ): Promise<Blob> {
   const client = hello.value?.client ?? 0;
   const answer = await fetch(address("picture", { client, ...size, format }), { signal });
-  if (!answer.ok) throw new Error((await answer.text()).trim() || answer.statusText);
+  if (!answer.ok) {
+    const why = (await answer.text()).trim() || answer.statusText;
+    throw new Error(plainNames(why, sentFolder.peek()));
+  }
   return answer.blob();
 }
 
@@ -83,8 +93,7 @@ function sendFile(file: File): void {
   };
   const fail = () => {
     upload.value = null;
-    const why = request.status === 413 ? "the server does not take files as large as this" : "";
-    notify("error", `${file.name}: ${why || request.responseText.trim() || "sending failed"}.`);
+    notify("error", `${file.name}: ${request.responseText.trim() || "sending failed"}.`);
   };
   request.upload.onprogress = ({ loaded, total }) => {
     upload.value = { name: file.name, fraction: loaded / Math.max(1, total), cancel };

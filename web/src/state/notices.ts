@@ -1,5 +1,6 @@
 // Short messages to the user; they go away by themselves, faults later than news.
 import { signal } from "@preact/signals";
+import { plainNames } from "../scene/sent_files";
 
 export interface Notice {
   id: number;
@@ -17,7 +18,11 @@ export function dismiss(id: number): void {
   notices.value = notices.value.filter((notice) => notice.id !== id);
 }
 
-export function notify(kind: Notice["kind"], text: string): void {
+/** Where the server keeps what was sent to it: not a name that anybody knows. */
+export const sentFolder = signal("");
+
+export function notify(kind: Notice["kind"], message: string): void {
+  const text = plainNames(message, sentFolder.peek());
   const id = ++lastId;
   const others = notices.value.filter((notice) => notice.text !== text);
   notices.value = [...others, { id, kind, text }].slice(-mostShown);

@@ -58,7 +58,7 @@ export function frameRate(): number {
 let newestId = 0;
 onFrame((frame) => {
   // Never back to an older picture.
-  if (frame.id <= newestId) return;
+  if (frame.id <= newestId || frame.recalled) return;
   newestId = frame.id;
   latest = frame;
   void show();

@@ -2,7 +2,8 @@
 import { computed, signal } from "@preact/signals";
 import { connectionState, onMessage, send } from "../protocol/connection";
 import type { ClientState, ServerMessageOf } from "../protocol/messages";
-import { notify } from "./notices";
+import { plainNames } from "../scene/sent_files";
+import { notify, sentFolder } from "./notices";
 
 export const hello = signal<ServerMessageOf<"hello"> | null>(null);
 export const clients = signal<ClientState[]>([]);
@@ -23,13 +24,14 @@ export function follow(client: number | null): void {
 
 onMessage("hello", (message) => {
   hello.value = message;
+  sentFolder.value = message.uploads;
   progress.value = null;
 });
 onMessage("clients", (message) => {
   clients.value = message.clients;
 });
 onMessage("progress", ({ activity, fraction }) => {
-  progress.value = { activity, fraction };
+  progress.value = { activity: plainNames(activity, sentFolder.peek()), fraction };
 });
 onMessage("ready", () => {
   progress.value = null;
