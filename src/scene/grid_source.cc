@@ -73,10 +73,10 @@ struct Body {
     const std::size_t stride = (1 + grid->size() / looked_at) | 1;
     for (std::size_t n = 0; n < grid->size(); n += stride) {
       if (!encloses(n)) continue;
-      const std::size_t i = n % grid->dims[0], rows = n / grid->dims[0];
-      points.push_back(grid->position(static_cast<double>(i),
-                                      static_cast<double>(rows % grid->dims[1]),
-                                      static_cast<double>(rows / grid->dims[1])));
+      const std::size_t row = n / grid->dims[0], layer = row / grid->dims[1];
+      points.push_back(grid->position(static_cast<double>(n % grid->dims[0]),
+                                      static_cast<double>(row % grid->dims[1]),
+                                      static_cast<double>(layer)));
     }
     const auto& [a, b, c] = grid->steps;
     volume = static_cast<double>(points.size() * stride) * std::abs(dot(a, cross(b, c)));

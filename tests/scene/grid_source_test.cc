@@ -74,9 +74,13 @@ LoadedGrid bell(const std::string& name, double x, double width, int n, double s
   grid.origin = {x - half, -half, -half};
   // Two axes change places, so that steps are no numbers along the world's.
   grid.steps = {Vector3d{0, step, 0}, {step, 0, 0}, {0, 0, step}};
-  for (int k = 0; k < n * n * n; ++k) {
-    const Vector3d r = grid.position(k % n, k / n % n, k / n / n) - Point3d{x, 0, 0};
-    grid.values.push_back(static_cast<float>(std::exp(-dot(r, r) / (2 * width * width))));
+  for (int k = 0; k < n; ++k) {
+    for (int j = 0; j < n; ++j) {
+      for (int i = 0; i < n; ++i) {
+        const Vector3d r = grid.position(i, j, k) - Point3d{x, 0, 0};
+        grid.values.push_back(static_cast<float>(std::exp(-dot(r, r) / (2 * width * width))));
+      }
+    }
   }
   return {{}, std::make_shared<const Grid>(std::move(grid))};
 }
