@@ -22,15 +22,16 @@ namespace {
 void warn_of_want_of_fields(const ParticleSet& particles, const GatheredScene& gathered,
                             Warnings& warnings) {
   const GeometrySource& geometry = gathered.geometry;
-  const auto wanting = std::count_if(geometry.srgb.begin(), geometry.srgb.end(), &by_field);
-  if (wanting == 0) return;
+  if (std::none_of(geometry.srgb.begin(), geometry.srgb.end(), &by_field)) return;
   std::vector<bool> has_field(particles.size());
   for (const FieldSource& source : gathered.sources) {
     for (const std::uint32_t i : source.index) has_field[i] = true;
   }
-  std::size_t without = 0;
-  for (std::size_t k = 0; k < geometry.srgb.size(); ++k) {
-    without += by_field(geometry.srgb[k]) && !has_field[geometry.index[k]];
+  std::size_t wanting = 0, without = 0;
+  for (std::size_t k = 0; k < geometry.index.size(); ++k) {
+    if (!by_field(geometry.srgb_of(k))) continue;
+    ++wanting;
+    without += has_field[geometry.index[k]] ? 0 : 1;
   }
   if (without == 0) return;
   warnings.add(fmt::format(

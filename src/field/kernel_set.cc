@@ -245,7 +245,9 @@ void allocate_kernels(std::size_t n, KernelSet& set) {
     std::fill(array.begin() + static_cast<std::ptrdiff_t>(n), array.end(), padding);
   };
   for (auto* array : {&set.x, &set.y, &set.z}) allocate(*array, far_away);
-  if (set.fields.size() > 1 || set.has_drawn_only) allocate(set.field, std::uint8_t{0});
+  // (without any field all are only drawn: field_of() is the number of the fields then, 0)
+  const bool mixed = set.fields.size() + (set.has_drawn_only ? 1 : 0) > 1;
+  if (mixed) allocate(set.field, std::uint8_t{0});
 }
 
 /// Puts gathered kernels into the tree's order.

@@ -47,8 +47,8 @@ struct KernelSet {
   double length_scale = 1;
   UninitializedVector<float> x, y, z;
   PerKernel radius, weight;
-  /// Index of each kernel's field; empty if there is only one field. Particles that are only drawn
-  /// have the number of the fields.
+  /// Index of each kernel's field; empty if there is only one field, or none. Particles that are
+  /// only drawn have the number of the fields.
   UninitializedVector<std::uint8_t> field;
   std::vector<FieldKernels> fields;
   bool has_drawn_only = false;  ///< particles that no field has

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -41,7 +42,7 @@ void set_radii(const GeometrySource& geometry, const UninitializedVector<std::ui
   }
   surface.radius.allocate(drawn.size());
   for (std::size_t i = 0; i < drawn.size(); ++i) {
-    surface.radius.at(i) = drawn[i] == not_drawn ? 0 : geometry.radius[drawn[i]] * scale;
+    surface.radius.at(i) = drawn[i] == not_drawn ? 0 : geometry.radius_of(drawn[i]) * scale;
   }
 }
 
@@ -130,11 +131,14 @@ std::optional<FieldSource> find_drawn_only(const ParticleSet& particles,
   for (const FieldSource& source : sources) {
     for (const std::uint32_t i : source.index) in_field[i] = true;
   }
+  const auto is_missing = [&](std::uint32_t i) { return !in_field[i]; };
   FieldSource drawn_only;
   drawn_only.drawn_only = true;
-  for (const std::uint32_t i : geometry.index) {
-    if (!in_field[i]) drawn_only.index.push_back(i);
-  }
+  // (room for just so many: there may be tens of millions)
+  drawn_only.index.reserve(static_cast<std::size_t>(
+      std::count_if(geometry.index.begin(), geometry.index.end(), is_missing)));
+  std::copy_if(geometry.index.begin(), geometry.index.end(), std::back_inserter(drawn_only.index),
+               is_missing);
   if (drawn_only.index.empty()) return std::nullopt;
   // A radius that fields have keeps theirs in one number, if it is; else the view is fitted by it.
   const float largest = *std::max_element(geometry.radius.begin(), geometry.radius.end());

@@ -13,6 +13,8 @@
 #include <limits>
 #include <mutex>
 #include <numbers>
+#include <optional>
+#include <utility>
 
 #include "core/error.h"
 #include "core/stopwatch.h"
@@ -319,10 +321,10 @@ void Renderer::build(const ParticleSet& particles, const std::vector<FieldSource
     if (geometry.empty()) return;
     surface_ = make_surface(particles, geometry, sources, order_, *kernels_, field_values_);
   };
-  const std::optional<FieldSource> drawn_only = find_drawn_only(particles, geometry, fields);
+  std::optional<FieldSource> drawn_only = find_drawn_only(particles, geometry, fields);
   if (!drawn_only) return build_from(fields);
   std::vector<FieldSource> sources = fields;
-  sources.push_back(*drawn_only);
+  sources.push_back(std::move(*drawn_only));
   build_from(sources);
 }
 

@@ -413,6 +413,7 @@ std::vector<Field> expand_fields(const Scene& scene, const ParticleSet& particle
     }
     if (num_present == 0) fields.push_back(std::move(field));
   }
+  finish_fitted(fields, grids);
   if (fields.size() > max_fields) {
     throw Error(fmt::format("{} fields; expected at most {}", fields.size(), max_fields));
   }

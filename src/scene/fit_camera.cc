@@ -280,7 +280,7 @@ void limit_radii(std::vector<VisibleSphere>& spheres) {
 void add_geometry(const ParticleSet& particles, const GeometrySource& geometry,
                   std::mt19937& random, std::vector<VisibleSphere>& spheres) {
   for_some(geometry.index.size(), random, [&](std::size_t i) {
-    spheres.push_back({particles.position(geometry.index[i]), geometry.radius[i]});
+    spheres.push_back({particles.position(geometry.index[i]), geometry.radius_of(i)});
   });
   const MinimumImage image(particles.cell);
   if (image.edges().empty()) return;

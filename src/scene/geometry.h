@@ -1,6 +1,7 @@
 // Balls and sticks: what a scene draws of particles besides their fields.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -49,8 +50,8 @@ struct Geometry {
 /// The particles that are drawn, with all that their balls and sticks need.
 struct GeometrySource {
   std::vector<std::uint32_t> index;  ///< into the ParticleSet, increasing
-  std::vector<float> radius;         ///< of balls, one an index; file's length; 0: none
-  /// 0xrrggbb, one an index. See by_field().
+  std::vector<float> radius;  ///< of balls; one an index, or one for all; file's length; 0: none
+  /// 0xrrggbb; one an index, or one for all. See by_field().
   std::vector<std::uint32_t> srgb;
   std::vector<Bond> bonds;  ///< between particles that are drawn
   /// One a particle: whether it has bonds by distance, which are found when there is a tree; empty
@@ -59,6 +60,8 @@ struct GeometrySource {
   float stick_radius = 0;  ///< file's length
 
   bool empty() const { return index.empty(); }
+  float radius_of(std::size_t k) const { return radius[radius.size() == 1 ? 0 : k]; }
+  std::uint32_t srgb_of(std::size_t k) const { return srgb[srgb.size() == 1 ? 0 : k]; }
 };
 
 /// Set beside a GeometrySource's colour that is only for want of a field's.

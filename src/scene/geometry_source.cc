@@ -142,6 +142,21 @@ auto with_key(std::string_view key, Get&& get) {
   }
 }
 
+/// The values of the particles in `index`, or one where they are all the same: memory for millions
+/// of balls. Precondition: there are any.
+template <class T>
+std::vector<T> gather_or_share(const std::vector<T>& values,
+                               const std::vector<std::uint32_t>& index) {
+  const T first = values[index.front()];
+  const bool same =
+      std::all_of(index.begin(), index.end(), [&](std::uint32_t i) { return values[i] == first; });
+  std::vector<T> gathered(same ? 1 : index.size(), first);
+  if (same) return gathered;
+  std::transform(index.begin(), index.end(), gathered.begin(),
+                 [&](std::uint32_t i) { return values[i]; });
+  return gathered;
+}
+
 void add_item(const ParticleSet& particles, const Geometry& item, Drawn& drawn,
               GeometrySource& source, Warnings& warnings, Progress* progress) {
   const auto index = with_key("select", [&] { return select_particles(particles, item.select); });
@@ -214,14 +229,14 @@ GeometrySource make_geometry_source(const ParticleSet& particles,
       throw Error(fmt::format("geometry[{}].{}", k, error.what()));
     }
   }
+  const auto count = static_cast<std::size_t>(std::count(drawn.any.begin(), drawn.any.end(), true));
+  if (count == 0) throw Error("geometry: none of its particles has a finite position and radius");
+  source.index.reserve(count);
   for (std::uint32_t i = 0; i < particles.size(); ++i) {
-    if (!drawn.any[i]) continue;
-    source.index.push_back(i);
-    source.radius.push_back(drawn.radius[i]);
-    source.srgb.push_back(drawn.srgb[i]);
+    if (drawn.any[i]) source.index.push_back(i);
   }
-  if (source.empty())
-    throw Error("geometry: none of its particles has a finite position and radius");
+  source.radius = gather_or_share(drawn.radius, source.index);
+  source.srgb = gather_or_share(drawn.srgb, source.index);
   return source;
 }
 

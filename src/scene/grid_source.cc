@@ -4,12 +4,17 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <iterator>
 #include <memory>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "core/error.h"
+#include "core/vec.h"
 #include "scene/fit_levels.h"
 #include "scene/geometry.h"
 #include "scene/transfer_function.h"
@@ -33,7 +38,88 @@ std::vector<Isosurface> fit_isosurfaces(const Grid& grid, const FieldColors& col
   return {{signs == Signs::positive ? level : -level, colors.own, 1}};
 }
 
+// A fitted surface that holds so much of another's body is translucent.
+constexpr double hidden_share = 0.9;
+constexpr double translucent = 0.35;
+
+/// The number of the sample next to p along each axis, or nullopt where the grid is not there.
+std::optional<std::size_t> sample_at(const Grid& grid, const Point3d& p) {
+  const auto& [a, b, c] = grid.steps;
+  const Vector3d v = p - grid.origin;
+  const double volume = dot(a, cross(b, c));
+  const double place[3] = {dot(v, cross(b, c)) / volume, dot(v, cross(c, a)) / volume,
+                           dot(v, cross(a, b)) / volume};
+  std::size_t index[3];
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto n = static_cast<double>(grid.dims[axis]);
+    double i = std::round(place[axis]);
+    if (grid.periodic) i -= n * std::floor(i / n);
+    if (!(i >= 0 && i < n)) return std::nullopt;
+    index[axis] = static_cast<std::size_t>(i);
+  }
+  return grid.index(index[0], index[1], index[2]);
+}
+
+/// What the fitted isosurfaces of a field enclose.
+struct Body {
+  Field* field = nullptr;
+  const Grid* grid = nullptr;
+  std::vector<Point3d> points;  ///< of some samples, evenly many of the grid's
+  double volume = 0;
+
+  Body(Field& of, const Grid& its) : field(&of), grid(&its) {
+    constexpr std::size_t looked_at = 1 << 16;
+    // (odd, so that not only samples of some columns are looked at)
+    const std::size_t stride = (1 + grid->size() / looked_at) | 1;
+    for (std::size_t n = 0; n < grid->size(); n += stride) {
+      if (!encloses(n)) continue;
+      const std::size_t row = n / grid->dims[0], layer = row / grid->dims[1];
+      points.push_back(grid->position(static_cast<double>(n % grid->dims[0]),
+                                      static_cast<double>(row % grid->dims[1]),
+                                      static_cast<double>(layer)));
+    }
+    const auto& [a, b, c] = grid->steps;
+    volume = static_cast<double>(points.size() * stride) * std::abs(dot(a, cross(b, c)));
+  }
+
+  bool encloses(std::size_t sample) const {
+    const double value = grid->values[sample];
+    return std::any_of(
+        field->isosurfaces.begin(), field->isosurfaces.end(), [&](const Isosurface& isosurface) {
+          return isosurface.value > 0 ? value >= isosurface.value : value <= isosurface.value;
+        });
+  }
+
+  /// Whether most of `other`, which is smaller, lies within.
+  bool hides(const Body& other) const {
+    if (!(volume > other.volume)) return false;
+    const auto within =
+        std::count_if(other.points.begin(), other.points.end(), [&](const Point3d& p) {
+          const std::optional<std::size_t> sample = sample_at(*grid, p);
+          return sample && encloses(*sample);
+        });
+    return static_cast<double>(within) >= hidden_share * static_cast<double>(other.points.size()) &&
+           within > 0;
+  }
+};
+
 }  // namespace
+
+void finish_fitted(std::vector<Field>& fields, const std::vector<LoadedGrid>& grids) {
+  std::vector<Body> bodies;
+  for (Field& field : fields) {
+    if (!field.fitted_isosurfaces) continue;
+    field.fitted_isosurfaces = false;
+    if (field.visible) bodies.emplace_back(field, *find_grid(*field.grid, grids));
+  }
+  for (const Body& body : bodies) {
+    if (std::none_of(bodies.begin(), bodies.end(),
+                     [&](const Body& other) { return body.hides(other); })) {
+      continue;
+    }
+    for (Isosurface& isosurface : body.field->isosurfaces) isosurface.opacity = translucent;
+  }
+}
 
 FieldColors colors_of_grid(std::size_t number) {
   // Of opposite hues in each pair.
@@ -82,7 +168,6 @@ void expand_grid_field(const Field& field, std::size_t k, const std::vector<Load
     one.grid->array = name;
     if (field.fitted_isosurfaces) {
       one.isosurfaces = fit_isosurfaces(*find_grid(*one.grid, grids), colors_of_grid(number));
-      one.fitted_isosurfaces = false;
     }
     ++number;
     if (field.name.empty()) {

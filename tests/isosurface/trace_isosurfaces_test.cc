@@ -245,6 +245,33 @@ TEST_P(Isosurfaces, AreCrossedWhereTheReferencesFieldCrosses) {
 }
 INSTANTIATE_TEST_SUITE_P(Random, Isosurfaces, testing::Range(0, 4));
 
+// A ray that is inside of a ball for a twentieth of a step only, wherever the planes lie.
+TEST(Isosurface, IsMetByRaysThatGrazeIt) {
+  Case c;
+  c.particles = particles_at({{0, 0, 0}, {50, 0, 0}});
+  c.field = field_of_all(c.particles, 1, 1, {.support_factor = 4});
+  c.kernels = build_kernel_set(c.particles, {c.field});
+  c.frame.kernels = &c.kernels;
+  c.frame.fields = {
+      {0, {{0, static_cast<float>(0.5 * c.kernels.fields[0].value_scale), 0.5F, {{1, 1, 1}}}}}};
+  const double scale = c.kernels.length_scale, step = 0.4, half_chord = 0.01;
+  const double offset = std::sqrt(2 * std::log(2) - half_chord * half_chord);
+  c.grid = {offset * scale, 0, scale, scale, 0, 0, 1, 1};
+  for (int phase = 0; phase < 20; ++phase) {
+    Camera camera;
+    camera.eye = {0, 0, 10 + step * phase / 20};
+    camera.target = {0, 0, 0};
+    c.frame.view = {camera_axes(camera), Point3d{} + scale * (camera.eye - c.kernels.origin), true};
+    c.frame.planes = {0, step * scale};
+    c.frame.last_plane = 60;
+    std::vector<IsosurfaceHit> hits;
+    trace_isosurfaces(c.frame, c.grid, hits);
+    ASSERT_EQ(hits.size(), 2u) << phase;
+    EXPECT_NEAR(hits[0].depth / scale, camera.eye.z - half_chord, 2e-4);
+    EXPECT_NEAR(hits[1].depth / scale, camera.eye.z + half_chord, 2e-4);
+  }
+}
+
 TEST(Isosurface, DoesNotDependOnTheOtherRaysOfTheGrid) {
   Case c;
   make_case(4, c);

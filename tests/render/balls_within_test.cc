@@ -29,14 +29,15 @@ PlainScene three_kernels(KernelType type) {
 TEST(BallsWithin, AreWithinTheSurfacesAndNearlyFillThem) {
   for (const KernelType type : {KernelType::gaussian, KernelType::cubic_spline,
                                 KernelType::quintic_spline, KernelType::wendland_c2}) {
-    const PlainScene s = three_kernels(type);
+    PlainScene s = three_kernels(type);
+    s.scene.fields[0].kernel.kernel_scale = 0.8;
     const KernelSet kernels = build_kernel_set(s.particles, s.scene.fields);
     for (const double value : {0.2, 0.6, 1.2}) {
       const auto balls = balls_within(kernels, {level(0.01), level(value), level(9, 0.5F)});
       ASSERT_TRUE(balls);
       for (std::size_t i = 0; i < kernels.size(); ++i) {
         const double weight =
-            static_cast<double>(kernels.weight[i]) / kernels.fields[0].value_scale;
+            0.8 * static_cast<double>(kernels.weight[i]) / kernels.fields[0].value_scale;
         const auto field_at = [&](double distance) {
           const double q = distance / static_cast<double>(kernels.radius[i]);
           return weight * evaluate(s.scene.fields[0].kernel, q).value;
@@ -50,6 +51,23 @@ TEST(BallsWithin, AreWithinTheSurfacesAndNearlyFillThem) {
         EXPECT_LE(field_at(radius / 0.96), value);
       }
     }
+  }
+}
+
+// Of two fields whose kernels are as high, but not as wide.
+TEST(BallsWithin, AreThoseOfEachFieldsKernel) {
+  PlainScene s = three_kernels(KernelType::gaussian);
+  s.scene.fields[0].weight = {1};
+  s.scene.fields[0].radius = {1};
+  s.scene.fields.push_back(s.scene.fields[0]);
+  s.scene.fields[1].kernel.shape.type = KernelType::wendland_c2;
+  const KernelSet kernels = build_kernel_set(s.particles, s.scene.fields);
+  const auto balls = balls_within(kernels, {level(0.5), {1, 0.5, 1, {{1, 1, 1}}}});
+  ASSERT_TRUE(balls);
+  for (std::size_t i = 0; i < kernels.size(); ++i) {
+    const Kernel& kernel = s.scene.fields[kernels.field_of(i)].kernel;
+    const double q = static_cast<double>(balls->radius[i]) / (0.97 * kernels.length_scale);
+    EXPECT_NEAR(evaluate(kernel, q).value, 0.5, 1e-4) << kernels.field_of(i);
   }
 }
 

@@ -239,6 +239,12 @@ TEST(VisibleSpheres, HoldSticksThatLeaveTheCell) {
   EXPECT_EQ(spheres[4].radius, 0.25);
   particles.cell->periodic[0] = false;
   EXPECT_EQ(visible_spheres(particles, {}, geometry).size(), 4u);
+  particles.cell->periodic[0] = true;
+  geometry.bonds = {{2, 3, {1, 0, 0}}};  // to the image at 16
+  spheres = visible_spheres(particles, {}, geometry);
+  ASSERT_EQ(spheres.size(), 6u);
+  EXPECT_EQ(spheres[4].center, (Point3d{10.5, 5, 5}));
+  EXPECT_EQ(spheres[5].center, (Point3d{0.5, 5, 5}));
 }
 
 /// A bell of height 1 and width 1 around (2, 3, 4), on 0 to 20 by half a length.

@@ -55,6 +55,21 @@ TEST(EnclosingLevel, OfADensityEnclosesItsIntegral) {
   EXPECT_NEAR(enclosing_level(raised, Signs::positive), 3 + normal_level, 0.02 * normal_level);
 }
 
+TEST(EnclosingLevel, LeavesOutGroundOfATenthOfTheHighest) {
+  EXPECT_NEAR(enclosing_level(std::vector{1.2f, 1.2f, 10.0f}, Signs::positive), 5.6, 0.05);
+  // (nothing is lower, so that it is halfway down to 0, as of a mask)
+  EXPECT_NEAR(enclosing_level(std::vector{0.8f, 0.8f, 0.8f, 10.0f}, Signs::positive), 0.4, 0.01);
+}
+
+// Of magnitudes between 1 and 1 + 1/256, which one bin holds.
+TEST(EnclosingLevel, IsFinerThanItsBins) {
+  std::vector<float> values{0.9999f};  // in the next one
+  for (int i = 0; i < 1000; ++i) {
+    values.push_back((i % 2 == 0 ? 1.0f : -1.0f) * (1 + (static_cast<float>(i) + 0.5f) / 256e3f));
+  }
+  EXPECT_NEAR(enclosing_level(values, Signs::both), 1 + 0.15 / 256, 0.01 / 256);
+}
+
 TEST(EnclosingLevel, OfAnAmplitudeEnclosesItsSquare) {
   const auto orbital =
       lattice([](const Vector3d& p) { return std::copysign(std::exp(-dot(p, p) / 4), p.x + 0.1); });

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <memory>
 #include <set>
 
@@ -33,7 +34,7 @@ TEST(ExpandFields, FitsIsosurfacesOfGrids) {
   scene.fields[0].fitted_isosurfaces = true;
   const auto fields =
       expand_fields(scene, {},
-                    {loaded("density", {0, 0, 4}), loaded("orbital", {-3, 0, 3}),
+                    {loaded("density", {0, 4, 0}), loaded("orbital", {-3, 0, 3}),
                      loaded("hole", {0, -4, 0}), loaded("other orbital", {-1, 0, 1})});
   ASSERT_EQ(fields.size(), 4u);
   for (const Field& field : fields) {
@@ -57,6 +58,58 @@ TEST(ExpandFields, FitsIsosurfacesOfGrids) {
     }
   }
   EXPECT_EQ(colors.size(), 6u) << "no two alike";
+  for (const std::size_t orbital : {1u, 3u}) {
+    const FieldColors own = colors_of_grid(orbital);
+    EXPECT_EQ(std::get<Color>(*fields[orbital].isosurfaces[0].color), own.positive);
+    EXPECT_EQ(std::get<Color>(*fields[orbital].isosurfaces[1].color), own.negative);
+  }
+}
+
+/// A bell of that width around a place on the x axis, on n^3 samples in the middle of which it is.
+LoadedGrid bell(const std::string& name, double x, double width, int n, double step) {
+  Grid grid;
+  grid.name = name;
+  grid.dims.fill(static_cast<std::size_t>(n));
+  const double half = 0.5 * step * (n - 1);
+  grid.origin = {x - half, -half, -half};
+  // Two axes change places, so that steps are no numbers along the world's.
+  grid.steps = {Vector3d{0, step, 0}, {step, 0, 0}, {0, 0, step}};
+  for (int k = 0; k < n; ++k) {
+    for (int j = 0; j < n; ++j) {
+      for (int i = 0; i < n; ++i) {
+        const Vector3d r = grid.position(i, j, k) - Point3d{x, 0, 0};
+        grid.values.push_back(static_cast<float>(std::exp(-dot(r, r) / (2 * width * width))));
+      }
+    }
+  }
+  return {{}, std::make_shared<const Grid>(std::move(grid))};
+}
+
+TEST(ExpandFields, MakesFittedIsosurfacesTranslucentThatHideOthers) {
+  Scene scene = scene_of_grids();
+  scene.fields[0].fitted_isosurfaces = true;
+  const auto opacities = [&](const std::vector<LoadedGrid>& grids) {
+    std::vector<double> all;
+    for (const Field& field : expand_fields(scene, {}, grids)) {
+      EXPECT_FALSE(field.fitted_isosurfaces);
+      all.push_back(field.isosurfaces.at(0).opacity);
+    }
+    return all;
+  };
+  const LoadedGrid outer = bell("outer", 0, 4, 30, 1), inner = bell("inner", 1, 1, 20, 0.5);
+  EXPECT_THAT(opacities({outer}), testing::ElementsAre(1));
+  EXPECT_THAT(opacities({outer, inner}), testing::ElementsAre(0.35, 1));
+  EXPECT_THAT(opacities({inner, outer}), testing::ElementsAre(1, 0.35));
+  EXPECT_THAT(opacities({outer, outer}), testing::ElementsAre(1, 1)) << "neither is within";
+  EXPECT_THAT(opacities({outer, bell("half out", 9, 1, 20, 0.5)}), testing::ElementsAre(1, 1));
+  EXPECT_THAT(opacities({outer, bell("beside", 60, 1, 20, 0.5)}), testing::ElementsAre(1, 1));
+  EXPECT_THAT(opacities({bell("small", 0, 0.3, 20, 0.2), inner, outer}),
+              testing::ElementsAre(1, 0.35, 0.35));
+}
+
+TEST(ColorsOfGrid, AreOrangeAndBlueForBothSignsOfTheFirst) {
+  EXPECT_EQ(color_to_srgb(colors_of_grid(0).positive), 0xe8702aU);
+  EXPECT_EQ(color_to_srgb(colors_of_grid(0).negative), 0x2f6fe4U);
 }
 
 TEST(MakeFieldSources, TellsSeveralGridsApart) {

@@ -48,5 +48,23 @@ TEST(Cut, LeavesTheBallsAndSticksOfParticlesOnTheKeptSide) {
   EXPECT_GT(num_cut, 500u);
 }
 
+// Planes cut away what is beyond any of them.
+TEST(Cut, LeavesWhatNoPlaneCutsAway) {
+  const RandomSurface scene = random_surface(1);
+  const KernelSet& kernels = *scene.kernels;
+  const std::size_t middle = kernels.size() / 2;
+  const ClipPlane planes[] = {{{1, 0, 0}, kernels.x[middle]}, {{0, -1, 0}, -kernels.y[middle]}};
+  const Surface left = cut(scene.surface, planes);
+  std::size_t by_one = 0;
+  for (std::size_t p = 0; p < kernels.size(); ++p) {
+    const bool first = kernels.x[p] > kernels.x[middle], second = kernels.y[p] < kernels.y[middle];
+    if (scene.surface.radius[p] > 0) {
+      EXPECT_EQ(left.radius[p] > 0, !first && !second) << p;
+      by_one += first != second;
+    }
+  }
+  EXPECT_GT(by_one, 0u);
+}
+
 }  // namespace
 }  // namespace motes
