@@ -66,7 +66,7 @@ asio::ip::address listening_address(std::string_view text) {
   const std::string address = without_brackets(text);
   if (address == "localhost") return asio::ip::address_v4::loopback();
   boost::system::error_code error;
-  const auto found = asio::ip::make_address(address, error);
+  auto found = asio::ip::make_address(address, error);
   if (!error) return found;
   throw Error(fmt::format(
       "--address {}: expected an IP address of this machine, 0.0.0.0 for all of them, or localhost",

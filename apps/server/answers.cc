@@ -6,6 +6,7 @@
 
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <variant>
 
 #include "scene/style.h"
 
@@ -86,6 +87,18 @@ json data_of(const DataInfo& info, std::optional<std::size_t> frames) {
   return data;
 }
 
+/// Colour maps that were fitted, with all of their points: those are what pages edit.
+Scene with_points(Scene scene) {
+  for (Field& field : scene.fields) {
+    const auto* named = std::get_if<NamedTransferFunction>(&field.transfer_function);
+    if (named == nullptr || !named->range || !named->extinction) continue;
+    const auto [low, high] = *named->range;
+    field.transfer_function = named_transfer_function(named->name, low, high, *named->extinction,
+                                                      named->log_scale.value_or(false));
+  }
+  return scene;
+}
+
 /// Resident memory of the program.
 std::size_t resident_bytes() {
   std::ifstream statm("/proc/self/statm");
@@ -109,7 +122,7 @@ std::string hello_text(ClientId client, const std::filesystem::path& uploads) {
 
 std::string scene_text(const Document& document, std::optional<std::size_t> frames,
                        const SceneAnswer& answer) {
-  json scene = json::parse(scene_to_json(document.scene(), ""));
+  json scene = json::parse(scene_to_json(with_points(document.scene()), ""));
   if (!scene.contains("fields")) scene["fields"] = json::array();
   json message{{"type", "scene"},
                {"sequence", or_null(answer.sequence)},
@@ -117,6 +130,7 @@ std::string scene_text(const Document& document, std::optional<std::size_t> fram
                {"scene", std::move(scene)},
                {"data", data_of(document.info(), frames)}};
   if (answer.new_data) message["new_data"] = true;
+  if (answer.fitted) message["fitted"] = true;
   return text_of(message);
 }
 

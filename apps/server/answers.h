@@ -26,6 +26,7 @@ struct SceneAnswer {
   std::optional<ClientId> client = {};
   Sequence sequence = {};
   bool new_data = false;  ///< clients take the scene's camera
+  bool fitted = false;    ///< that camera was fitted to the data
 };
 /// `frames`: of the document's file, if they have been counted.
 std::string scene_text(const Document& document, std::optional<std::size_t> frames,

@@ -31,7 +31,7 @@ void Studio::connect(ClientId client, std::shared_ptr<Outlet> outlet) {
         Viewer& viewer = viewers_.emplace(client, outlet).first->second;
         if (document_) {
           viewer.look_anew(document_->camera());
-          viewer.outlet().send_text(scene_text(*document_, frames_, {}));
+          viewer.outlet().send_text(scene_text(*document_, frames_, {.fitted = fitted_}));
         } else if (!opening_error_.empty()) {
           viewer.outlet().send_text(error_text({}, opening_error_));
         }

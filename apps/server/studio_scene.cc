@@ -43,10 +43,12 @@ void Studio::start_opening(const Opening& opening) {
         },
         cancelled);
     std::shared_ptr<Document> document;
+    bool fitted = false;
     Warnings warnings;
     const auto error = error_of([&] {
       progress.update("opening " + opening.name, 0);
       Scene scene = opening.scene();
+      fitted = !scene.eye && !scene.target;
       {
         const std::lock_guard lock(mutex_);
         opening_files_ = files_of(scene);
@@ -55,8 +57,9 @@ void Studio::start_opening(const Opening& opening) {
           Document::open(opening.name, std::move(scene), &progress, warnings));
     });
     post(
-        [this, opening, number, document, warnings, error] {
+        [this, opening, number, document, fitted, warnings, error] {
           if (number == opening_) {
+            if (document) fitted_ = fitted;
             end_opening(opening, document, error, warnings);
           } else if (opening.failed) {
             opening.failed({});  // something else has been asked for since
@@ -111,7 +114,7 @@ void Studio::adopt(const Opening& opening, std::shared_ptr<Document> document,
     viewer.look_anew(document_->camera());
     if (opening.client == id && opening.sequence) viewer.took_scene(*opening.sequence);
   }
-  send_scene({opening.client, opening.sequence, !opening.sequence});
+  send_scene({opening.client, opening.sequence, !opening.sequence, fitted_});
   send_warnings(warnings);
   count_frames();
 }

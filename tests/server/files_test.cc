@@ -201,7 +201,7 @@ TEST_F(FilesTest, ThatAreSentHaveAPlaceUntilTheEnd) {
 TEST(Uploads, MakeRoomForNewOnesAndNoMore) {
   Uploads uploads(100);
   const auto send = [&uploads](const char* name, std::uint64_t bytes) {
-    const fs::path place = uploads.place_for(name);
+    fs::path place = uploads.place_for(name);
     std::ofstream(place) << "x";
     EXPECT_TRUE(uploads.grow(place, bytes, {}));
     uploads.complete(place);

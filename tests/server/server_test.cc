@@ -6,6 +6,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -247,6 +248,18 @@ TEST(Server, AnswersSoManyRequestsAndStrangersKeepNobodyOut) {
   };
   for (const int expected : {403, 403, 429}) EXPECT_EQ(status("wrong"), expected);
   for (const int expected : {200, 200, 429}) EXPECT_EQ(status(server.token()), expected);
+}
+
+TEST(Server, GivesColourMapsAsPoints) {
+  const RunningServer server;
+  TestClient client(server);
+  client.wait_for("scene");
+  std::ofstream(server.folder() / "nameless.csv") << "x,y,z\n0,0,0\n1,0,0\n0,1,0\n";
+  client.send(R"({"type":"open","path":"nameless.csv"})");
+  auto scene = client.wait_for("scene");
+  while (scene.at("data").at("file") != "nameless.csv") scene = client.wait_for("scene");
+  const auto function = scene.at("scene").at("fields").at(0).at("transfer_function");
+  EXPECT_GT(function.at("points").size(), 2U) << function;
 }
 
 TEST(Server, SaysWhatIsWrongWithASceneAndKeepsTheOldOne) {

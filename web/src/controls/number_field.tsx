@@ -42,16 +42,18 @@ export function NumberField(props: NumberFieldProps) {
     }
   };
 
+  const shown = text ?? formatNumber(value);
   return (
     <input
       class="number"
+      style={{ "--characters": shown.length }}
       id={props.id}
       type="text"
       inputMode="decimal"
       autocomplete="off"
       spellcheck={false}
       aria-label={label}
-      value={text ?? formatNumber(value)}
+      value={shown}
       onInput={(event) => setText(event.currentTarget.value)}
       onFocus={(event) => event.currentTarget.select()}
       onBlur={commit}

@@ -1,4 +1,5 @@
 // Time steps of a trajectory: play, step, slide.
+import { useLayoutEffect, useRef } from "preact/hooks";
 import { Icon } from "../controls/icon";
 import { IconButton } from "../controls/button";
 import { Menu, MenuItem } from "../controls/menu";
@@ -14,16 +15,31 @@ import {
   step,
   togglePlaying,
 } from "../state/player";
+import { coveredBelow } from "../state/view";
 
 const speeds = [1, 2, 5, 10, 15, 30];
 
+/** While the slider is there, what is fitted to the picture leaves its place free. */
+function useCover(bar: { current: HTMLElement | null }, isThere: boolean): void {
+  useLayoutEffect(() => {
+    if (!isThere || !bar.current) return;
+    const { top } = bar.current.getBoundingClientRect();
+    coveredBelow.value = innerHeight - top;
+    return () => {
+      coveredBelow.value = 0;
+    };
+  }, [isThere]);
+}
+
 export function Timeline() {
+  const bar = useRef<HTMLDivElement>(null);
   const count = frameCount.value;
+  useCover(bar, count !== null && count > 1 && data.value !== null);
   if (!isTrajectory.value || !data.value) return null;
   if (count === null) {
     return (
-      <div class="timeline bar" role="status">
-        <span class="spinner" /> counting time steps…
+      <div class="counting bar" role="status">
+        <span class="spinner" /> Counting time steps…
       </div>
     );
   }
@@ -31,7 +47,7 @@ export function Timeline() {
   const time = data.value.time;
   const label = `Step ${frame + 1} of ${count}${time === null ? "" : `, time ${formatNumber(time)}`}`;
   return (
-    <div class="timeline bar" role="group" aria-label="Trajectory">
+    <div ref={bar} class="timeline bar" role="group" aria-label="Trajectory">
       <IconButton
         class="large"
         icon={playing.value ? "pause" : "play"}

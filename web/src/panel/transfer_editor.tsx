@@ -22,6 +22,9 @@ const height = 132;
 const inset = { left: 9, right: 9, top: 10, bottom: 18 };
 const stops = 32;
 const keyStep = 0.01;
+const pointRadius = 6.5;
+// A press as close to a point as this takes it.
+const reach = 8;
 // Of the points' range, beside it where the editor is close to them.
 const margin = 0.1;
 
@@ -162,15 +165,34 @@ function Background({
   );
 }
 
+/** Whether the points would touch if all were as large as can be. */
+function isDense({ points }: TransferFunction, layout: Layout): boolean {
+  const length = xOf(points.at(-1)!.value, layout) - xOf(points[0]!.value, layout);
+  return length < 2.2 * pointRadius * (points.length - 1);
+}
+
+/** The point that a press at (x, y) is meant for. */
+function nearestPoint({ points }: TransferFunction, x: number, y: number, layout: Layout) {
+  const distances = points.map((point) =>
+    Math.hypot(xOf(point.value, layout) - x, yOf(point.extinction, layout) - y),
+  );
+  const least = Math.min(...distances);
+  return least <= reach ? distances.indexOf(least) : null;
+}
+
 let lastId = 0;
 
 /** Dragging: scales stay as they are from press to release. */
 function useDrag(props: EditorProps, layout: Layout, setFrozen: (layout: Layout | null) => void) {
   const dragged = useRef<number | null>(null);
-  const at = (event: PointerEvent) => {
+  const placeOf = (event: PointerEvent) => {
     const box = (event.currentTarget as SVGElement).getBoundingClientRect();
     const x = ((event.clientX - box.left) * height) / box.height;
     const y = ((event.clientY - box.top) * height) / box.height;
+    return { x, y };
+  };
+  const at = (event: PointerEvent) => {
+    const { x, y } = placeOf(event);
     const t = (x - inset.left) / (layout.width - inset.left - inset.right);
     const up = (height - inset.bottom - y) / (height - inset.top - inset.bottom);
     return {
@@ -181,8 +203,8 @@ function useDrag(props: EditorProps, layout: Layout, setFrozen: (layout: Layout 
   const down = (event: PointerEvent) => {
     if (event.button !== 0) return;
     const svg = event.currentTarget as SVGSVGElement;
-    const point = (event.target as Element).closest("[data-point]");
-    let index = point ? Number(point.getAttribute("data-point")) : null;
+    const { x, y } = placeOf(event);
+    let index = nearestPoint(props.transfer, x, y, layout);
     if (index === null) {
       const { value, extinction } = at(event);
       const added = addPoint(props.transfer, value, layout.axis, extinction);
@@ -247,7 +269,7 @@ export function TransferEditor(props: EditorProps) {
   return (
     <svg
       ref={svg}
-      class="editor"
+      class={isDense(transfer, layout) ? "editor dense" : "editor"}
       viewBox={`0 0 ${width} ${height}`}
       role="group"
       aria-label={`Transfer function${scale}: extinction over the field's value`}
@@ -262,7 +284,7 @@ export function TransferEditor(props: EditorProps) {
           class={index === selected ? "editor-point selected" : "editor-point"}
           cx={xOf(point.value, layout)}
           cy={yOf(point.extinction, layout)}
-          r={6.5}
+          r={pointRadius}
           fill={hexOf(point.color)}
           tabIndex={0}
           role="slider"

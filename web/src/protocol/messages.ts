@@ -98,6 +98,8 @@ export type ServerMessage =
       scene: Scene;
       data: Data;
       new_data?: boolean;
+      /** Its camera was fitted to the data. */
+      fitted?: boolean;
     }
   | { type: "progress"; activity: string; fraction: number | null }
   | { type: "ready" }

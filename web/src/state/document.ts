@@ -8,7 +8,7 @@ import type { Camera, Scene } from "../protocol/scene";
 import { type History, amend, begin, record, redo, undo } from "../scene/history";
 import { notify } from "./notices";
 import { hello } from "./session";
-import { aspect, camera, moveCamera, size } from "./view";
+import { aspect, camera, moveCamera, showFitted, size } from "./view";
 
 const history = signal<History<Scene> | null>(null);
 
@@ -152,7 +152,9 @@ onMessage("scene", (message) => {
   const { camera: its, render } = message.scene;
   if (its && (newData || (own && takesCamera))) {
     takesCamera = false;
-    moveCamera(framed(its, render?.size));
+    const camera = framed(its, render?.size);
+    if (message.fitted) showFitted(camera);
+    else moveCamera(camera);
   }
 });
 

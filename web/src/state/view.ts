@@ -82,6 +82,31 @@ export function fit(): void {
   send({ type: "fit" });
 }
 
+/** CSS pixels at the picture's bottom that are covered from side to side. */
+export const coveredBelow = signal(0);
+
+/** What was fitted to the whole picture and what came of it, as long as that is what is shown. */
+let fitted: { whole: Camera; shown: Camera } | null = null;
+
+/** Farther away, so that what fills the picture's height is not covered below. */
+function uncovered(camera: Camera): Camera {
+  const width = size.peek().width / devicePixelRatio;
+  const height = size.peek().height / devicePixelRatio;
+  const free = height - 2 * coveredBelow.peek();
+  return free < width && free > height / 2 ? zoom(camera, height / free, centre) : camera;
+}
+
+/** Shows what was fitted to the picture, and keeps it so while nobody moves. */
+export function showFitted(whole: Camera, show: (camera: Camera) => void = moveCamera): void {
+  fitted = { whole, shown: uncovered(whole) };
+  show(fitted.shown);
+}
+
+effect(() => {
+  const covers = coveredBelow.value > 0;
+  if (covers && fitted && camera.peek() === fitted.shown) showFitted(fitted.whole);
+});
+
 effect(() => {
   const { width, height } = size.value;
   if (width > 0 && connectionState.value.kind === "open") send({ type: "size", width, height });
@@ -106,7 +131,7 @@ effect(() => {
 
 onMessage("camera", (message) => {
   if (message.client === hello.value?.client) {
-    glideTo(message.camera);
+    showFitted(message.camera, glideTo);
   } else if (!moving.peek()) {
     // Of the one that is followed. It is not sent: a view of its own would end the following.
     cancelAnimationFrame(gliding);
