@@ -253,7 +253,7 @@ TEST(Isosurface, IsMetByRaysThatGrazeIt) {
   c.kernels = build_kernel_set(c.particles, {c.field});
   c.frame.kernels = &c.kernels;
   c.frame.fields = {
-      {0, {{0, static_cast<float>(0.5 * c.kernels.fields[0].value_scale), 0.5F, {{1, 1, 1}}}}}};
+      {0, {{0, static_cast<float>(0.5 * c.kernels.fields[0].value_scale), 0.5F, {{1, 1, 1}}}}, {}}};
   const double scale = c.kernels.length_scale, step = 0.4, half_chord = 0.01;
   const double offset = std::sqrt(2 * std::log(2) - half_chord * half_chord);
   c.grid = {offset * scale, 0, scale, scale, 0, 0, 1, 1};
