@@ -39,9 +39,11 @@ void Studio::stop() {
   if (thread_.joinable()) thread_.join();
   if (encoding_) *encoding_->request.abandoned = true;
   encoder_.reset();
+  // Nothing is left that would answer when the network is gone.
   viewers_.clear();
   tasks_.clear();
   pictures_.clear();
+  encoding_.reset();
 }
 
 void Studio::post(Task task, bool breaks_off) {
