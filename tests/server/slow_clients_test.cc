@@ -244,7 +244,7 @@ TEST(SlowClients, ThatDoNotTakeTextsAreLeft) {
     points.push_back(point);
     points.back()["value"] = point.at("value").get<double>() + i;
   }
-  for (int i = 1; i <= 12; ++i) {
+  for (int i = 1; i <= 6; ++i) {
     scene["render"]["background"] = {0.01 * i, 0, 0};
     good.send(nlohmann::json{{"type", "scene"}, {"sequence", i}, {"scene", scene}}.dump());
     good.wait_for("scene");
