@@ -60,12 +60,21 @@ class OrderedTask final : public d1::task {
 };
 
 /// A task's end is an atomic decrement of the wait context's counter, in oneTBB's headers and so
-/// visible already. What is missing is its reader, inside the library: the counter follows one
-/// other member.
-void acquire_ends_of_tasks(d1::wait_context& wait_context) {
-  static_assert(sizeof(d1::wait_context) == 2 * sizeof(std::uint64_t));
-  __tsan_acquire(reinterpret_cast<std::uint64_t*>(&wait_context) + 1);
-}
+/// visible already. What is missing is its reader, inside the library, which reads before it
+/// returns or throws on what a task threw: the counter follows one other member.
+class EndsOfTasks {
+ public:
+  explicit EndsOfTasks(d1::wait_context& wait_context)
+      : counter_(reinterpret_cast<std::uint64_t*>(&wait_context) + 1) {
+    static_assert(sizeof(d1::wait_context) == 2 * sizeof(std::uint64_t));
+  }
+  ~EndsOfTasks() { __tsan_acquire(counter_); }
+  EndsOfTasks(const EndsOfTasks&) = delete;
+  EndsOfTasks& operator=(const EndsOfTasks&) = delete;
+
+ private:
+  std::uint64_t* counter_;
+};
 
 }  // namespace
 
@@ -91,16 +100,16 @@ void __TBB_EXPORTED_FUNC execute_and_wait(d1::task& task, d1::task_group_context
       d1::task&, d1::task_group_context&, d1::wait_context&, d1::task_group_context&)>(
       "_ZN3tbb6detail2r116execute_and_waitERNS0_2d14taskERNS2_18task_group_contextERNS2_12wait_"
       "contextES6_");
+  const EndsOfTasks acquired(wait_context);
   library(task, task_context, wait_context, context);
-  acquire_ends_of_tasks(wait_context);
 }
 
 void __TBB_EXPORTED_FUNC wait(d1::wait_context& wait_context, d1::task_group_context& context) {
   static const auto library =
       library_function<void (*)(d1::wait_context&, d1::task_group_context&)>(
           "_ZN3tbb6detail2r14waitERNS0_2d112wait_contextERNS2_18task_group_contextE");
+  const EndsOfTasks acquired(wait_context);
   library(wait_context, context);
-  acquire_ends_of_tasks(wait_context);
 }
 
 // Memory of tasks goes from thread to thread through a pool.
