@@ -110,9 +110,15 @@ void edit(Scene& scene, std::mt19937& random) {
   }
 }
 
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr unsigned num_documents = 4;  // what there is to be found is the same in all
+#else
+constexpr unsigned num_documents = 12;
+#endif
+
 TEST_F(DocumentTest, AnyEditsComeToTheSamePictureAsOpeningTheScene) {
-  int refused = 0, taken = 0;
-  for (unsigned seed = 0; seed < 12; ++seed) {
+  unsigned refused = 0, taken = 0;
+  for (unsigned seed = 0; seed < num_documents; ++seed) {
     std::mt19937 random(seed);
     Document document = open(scene());
     for (int i = 0; i < 12; ++i) {
@@ -136,8 +142,8 @@ TEST_F(DocumentTest, AnyEditsComeToTheSamePictureAsOpeningTheScene) {
           << "seed " << seed << " edit " << i;
     }
   }
-  EXPECT_GT(refused, 10);
-  EXPECT_GT(taken, 50);
+  EXPECT_GT(refused, num_documents);
+  EXPECT_GT(taken, 4 * num_documents);
 }
 
 TEST_F(DocumentTest, DoesTheLeastWork) {
