@@ -4,6 +4,8 @@
 #include "core/error.h"
 #include "core/report.h"
 #include "core/vec.h"
+#include "document/document.h"
+#include "document/prepare.h"
 #include "field/probe.h"
 #include "grid/grid_sampler.h"
 #include "grid/lattice.h"
