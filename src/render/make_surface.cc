@@ -113,8 +113,7 @@ Surface make_surface(const ParticleSet& particles, GeometrySource& geometry,
   set_colors(geometry, drawn, surface.colors);
   field_values = find_field_values(kernels, geometry, particle_of, drawn);
   if (!geometry.bonds_among.empty()) {
-    geometry.bonds =
-        find_bonds(particles, geometry.bonds_among, particle_of, kernels);
+    geometry.bonds = find_bonds(particles, geometry.bonds_among, particle_of, kernels);
   }
   if (!geometry.bonds.empty()) {
     surface.sticks = make_sticks(particles, geometry.bonds, particle_of, kernels,
