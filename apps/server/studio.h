@@ -157,7 +157,7 @@ class Studio {
   std::shared_ptr<Document> document_;  ///< null: nothing opened yet
   Viewers viewers_;
   ClientId last_served_ = 0;
-  bool fitted_ = false;        ///< the camera that the document was opened with
+  bool fitted_ = false;        ///< the document's camera was fitted to its data
   std::uint64_t version_ = 0;  ///< of what the document shows
   std::deque<WantedHistogram> histograms_;
   std::deque<std::shared_ptr<PictureJob>> pictures_;

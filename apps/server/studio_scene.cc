@@ -165,6 +165,7 @@ void Studio::change_scene(ClientId client, std::uint32_t sequence, const Scene& 
   });
   if (progress.has_reported()) send_to_all(ready_text());
   if (error) return viewers_.at(client).outlet().send_text(error_text(sequence, *error));
+  fitted_ = false;  // edits bring the camera of who makes them
   document_has_changed();
   for (auto& [id, viewer] : viewers_) viewer.invalidate();
   viewers_.at(client).took_scene(sequence);

@@ -84,6 +84,14 @@ class TestClient : public Client {
                  {{"eye", {x, 0.3, 12}}, {"target", {0.3, 0.3, 0}}, {"up", {0, 1, 0}}, {"fov", 30}},
                  moving);
   }
+  /// Asks for a file of that path or name, and waits until its scene is shown.
+  nlohmann::json open(const std::string& path) {
+    send(nlohmann::json{{"type", "open"}, {"path", path}}.dump());
+    const auto name = std::filesystem::path(path).filename().string();
+    auto scene = wait_for("scene");
+    while (scene.at("data").at("file") != name) scene = wait_for("scene");
+    return scene;
+  }
 };
 
 }  // namespace motes::server

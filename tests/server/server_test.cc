@@ -178,9 +178,7 @@ TEST(Server, OpensFilesOfItsFolderAlone) {
     client.send(nlohmann::json{{"type", "open"}, {"path", path}}.dump());
     EXPECT_THAT(client.wait_for("error").at("message"), HasSubstr("there is no such file"));
   }
-  client.send(R"({"type":"open","path":"other.xyz"})");
-  auto scene = client.wait_for("scene");
-  while (scene.at("data").at("particles") != 2) scene = client.wait_for("scene");
+  EXPECT_EQ(client.open("other.xyz").at("data").at("particles"), 2);
 }
 
 TEST(Server, AnswersACancelWhateverIsUnderWay) {
@@ -204,9 +202,7 @@ TEST(Server, TakesUploadsUpToItsLimit) {
   ASSERT_EQ(reply.status, 200);
   TestClient client(server);
   const auto path = nlohmann::json::parse(reply.body).at("path");
-  client.send(nlohmann::json{{"type", "open"}, {"path", path}}.dump());
-  auto scene = client.wait_for("scene");
-  while (scene.at("data").at("particles") != 1) scene = client.wait_for("scene");
+  EXPECT_EQ(client.open(path).at("data").at("particles"), 1);
 }
 
 TEST(Server, KeepsNoUploadThatItCannotOpenAndNotMoreThanItsLimit) {
@@ -255,11 +251,24 @@ TEST(Server, GivesColourMapsAsPoints) {
   TestClient client(server);
   client.wait_for("scene");
   std::ofstream(server.folder() / "nameless.csv") << "x,y,z\n0,0,0\n1,0,0\n0,1,0\n";
-  client.send(R"({"type":"open","path":"nameless.csv"})");
-  auto scene = client.wait_for("scene");
-  while (scene.at("data").at("file") != "nameless.csv") scene = client.wait_for("scene");
+  const auto scene = client.open("nameless.csv");
   const auto function = scene.at("scene").at("fields").at(0).at("transfer_function");
   EXPECT_GT(function.at("points").size(), 2U) << function;
+}
+
+TEST(Server, TellsWhetherTheCameraWasFitted) {
+  const RunningServer server;
+  TestClient client(server);
+  auto message = client.wait_for("scene");
+  EXPECT_TRUE(message.at("fitted"));
+  EXPECT_TRUE(TestClient(server).wait_for("scene").at("fitted"));
+  // An edit brings the camera of who makes it.
+  message["scene"]["render"]["background"] = {0.5, 0, 0};
+  client.send(
+      nlohmann::json{{"type", "scene"}, {"sequence", 1}, {"scene", message["scene"]}}.dump());
+  while (message.at("sequence") != 1) message = client.wait_for("scene");
+  EXPECT_FALSE(message.contains("fitted"));
+  EXPECT_FALSE(TestClient(server).wait_for("scene").contains("fitted"));
 }
 
 TEST(Server, SaysWhatIsWrongWithASceneAndKeepsTheOldOne) {

@@ -22,41 +22,67 @@
 namespace motes::server {
 namespace {
 
-/// A client that acknowledges at once and remembers the last frame.
-class EagerOutlet : public Outlet {
+/// A client that remembers the last frame, and what was recalled.
+class FrameOutlet : public Outlet {
  public:
-  explicit EagerOutlet(Studio& studio) : studio_(studio) {}
-
   void send_text(std::string /*text*/) override {}
   void send_frame(std::string message) override {
     const FrameHeader header = parse_frame_header(message).value();
-    studio_.handle(1, AckMessage{header.frame});
+    if (is_fast(header)) studio_.handle(1, AckMessage{header.frame});
     const std::lock_guard lock(mutex_);
     stale_ = stale_ || header.view_sequence < last_.view_sequence;
     last_ = header;
     image_ = message.substr(frame_header_bytes);
     changed_.notify_all();
   }
-  void recall_frame(std::uint32_t /*frame*/) override {}
-  /// Waits for the full picture of that view; "": it took too long.
-  std::string wait_for_final(std::uint32_t view) {
+  void recall_frame(std::uint32_t frame) override {
+    const std::lock_guard lock(mutex_);
+    recalled_.push_back(frame);
+  }
+  struct Final {
+    std::uint32_t frame = 0;
+    std::string image;
+  };
+  /// Waits for the full picture of that view; without an image: it took too long.
+  Final wait_for_final(std::uint32_t view) {
     std::unique_lock lock(mutex_);
     const bool came = changed_.wait_for(lock, std::chrono::seconds(60),
                                         [&] { return last_.final && last_.view_sequence == view; });
-    return came ? image_ : "";
+    EXPECT_TRUE(came);
+    return came ? Final{last_.frame, image_} : Final{};
   }
   bool was_stale() {
     const std::lock_guard lock(mutex_);
     return stale_;
   }
+  std::vector<std::uint32_t> recalled() {
+    const std::lock_guard lock(mutex_);
+    return recalled_;
+  }
+
+ protected:
+  explicit FrameOutlet(Studio& studio) : studio_(studio) {}
 
  private:
+  /// Whether it acknowledges such a frame.
+  virtual bool is_fast(const FrameHeader& header) const = 0;
+
   Studio& studio_;
   std::mutex mutex_;
   std::condition_variable changed_;
   FrameHeader last_;
   std::string image_;
   bool stale_ = false;
+  std::vector<std::uint32_t> recalled_;
+};
+
+/// Acknowledges at once.
+class EagerOutlet : public FrameOutlet {
+ public:
+  explicit EagerOutlet(Studio& studio) : FrameOutlet(studio) {}
+
+ private:
+  bool is_fast(const FrameHeader& /*header*/) const override { return true; }
 };
 
 constexpr const char* zeolite = MOTES_SOURCE_DIR "/data/demo/zeolite_mfi_3494.xyz";
@@ -82,7 +108,7 @@ struct OpenStudio {
     studio.connect(1, outlet);
     studio.handle(1, SizeMessage{side, side});
     // What is opened is looked at anew, whatever was looked at before.
-    EXPECT_NE(outlet->wait_for_final(0), "");
+    EXPECT_NE(outlet->wait_for_final(0).image, "");
   }
 };
 
@@ -98,7 +124,7 @@ TEST(Studio, KeepsUpWithTwoHoursOfEvents) {
     if (i % 100 == 0) studio.handle(1, PickMessage{i, 16, 16});
     if (i % 1000 == 0) studio.handle(1, HistogramMessage{});
   }
-  EXPECT_EQ(open.outlet->wait_for_final(num_events), picture_of(open.scene, camera, 32, 32));
+  EXPECT_EQ(open.outlet->wait_for_final(num_events).image, picture_of(open.scene, camera, 32, 32));
   EXPECT_FALSE(open.outlet->was_stale());
 }
 
@@ -153,7 +179,7 @@ TEST(Studio, ShowsFramesWhileAPictureIsMade) {
   for (std::uint32_t view = 1; view <= 10; ++view) {  // more than it can be patient with
     camera.eye = {20.0 + view, 20, 120};
     studio.handle(1, ViewMessage{view, camera, false});
-    EXPECT_NE(open.outlet->wait_for_final(view), "");
+    EXPECT_NE(open.outlet->wait_for_final(view).image, "");
   }
   EXPECT_FALSE(made);
   studio.abandon(huge);
@@ -166,7 +192,7 @@ TEST(Studio, FinishesPicturesThatAreBrokenOff) {
   camera.target = {20, 20, 20};
   camera.eye = {21, 20, 120};
   studio.handle(1, ViewMessage{1, camera, false});
-  EXPECT_NE(open.outlet->wait_for_final(1), "");
+  EXPECT_NE(open.outlet->wait_for_final(1).image, "");
   const std::string expected = picture_of(open.scene, camera, 400, 400);
   std::promise<std::string> made;
   studio.picture({1, 400, 400}, [&](const std::optional<std::string>& file, const std::string&) {
@@ -183,40 +209,12 @@ TEST(Studio, FinishesPicturesThatAreBrokenOff) {
 }
 
 /// A client to which a full picture takes for ever.
-class SlowOutlet : public Outlet {
+class SlowOutlet : public FrameOutlet {
  public:
-  explicit SlowOutlet(Studio& studio) : studio_(studio) {}
-
-  void send_text(std::string /*text*/) override {}
-  void send_frame(std::string message) override {
-    const FrameHeader header = parse_frame_header(message).value();
-    if (!header.final) studio_.handle(1, AckMessage{header.frame});
-    const std::lock_guard lock(mutex_);
-    last_ = header;
-    changed_.notify_all();
-  }
-  void recall_frame(std::uint32_t frame) override {
-    const std::lock_guard lock(mutex_);
-    recalled_.push_back(frame);
-  }
-  /// The number of the full picture of that view.
-  std::uint32_t wait_for_final(std::uint32_t view) {
-    std::unique_lock lock(mutex_);
-    EXPECT_TRUE(changed_.wait_for(lock, std::chrono::seconds(60),
-                                  [&] { return last_.final && last_.view_sequence == view; }));
-    return last_.frame;
-  }
-  std::vector<std::uint32_t> recalled() {
-    const std::lock_guard lock(mutex_);
-    return recalled_;
-  }
+  explicit SlowOutlet(Studio& studio) : FrameOutlet(studio) {}
 
  private:
-  Studio& studio_;
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  FrameHeader last_;
-  std::vector<std::uint32_t> recalled_;
+  bool is_fast(const FrameHeader& header) const override { return !header.final; }
 };
 
 TEST(Studio, RecallsFullPicturesThatAreOutdated) {
@@ -231,7 +229,7 @@ TEST(Studio, RecallsFullPicturesThatAreOutdated) {
   for (std::uint32_t view = 1; view <= 5; ++view) {  // more than may be under way
     camera.eye = {20.0 + view, 20, 120};
     studio.handle(1, ViewMessage{view, camera, false});
-    const std::uint32_t frame = outlet->wait_for_final(view);
+    const std::uint32_t frame = outlet->wait_for_final(view).frame;
     EXPECT_EQ(outlet->recalled(), outdated);
     outdated.push_back(frame);
   }
