@@ -61,7 +61,8 @@ bool real_numbers_look_swapped(std::string_view bytes, bool swap) {
     usual_swapped += between(swapped, 1e-12, 1e12);
     useless += !between(value, 1e-36, 1e36);
   }
-  return useless > 0 && 2 * usual < num && 20 * usual_swapped > 19 * num;
+  // (in the other order few of numbers that make sense are usual: exponents are then any)
+  return useless > 0 && 20 * usual < 19 * num && 20 * usual_swapped > 19 * num;
 }
 
 }  // namespace

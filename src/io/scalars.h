@@ -44,8 +44,8 @@ void convert_scalars(std::string_view bytes, ScalarType type, bool big_endian,
                      std::span<float> out);
 
 /// Whether the numbers in `bytes` make no sense in this byte order and all do in the other: real
-/// numbers of which more than half are not finite or far from 1, some beyond all use, while
-/// in the other order they lie between 1e-12 and 1e12 but for a few. Looks at some of many, leaves
+/// numbers of which more than a few are not finite or far from 1, some beyond all use, while in the
+/// other order they lie between 1e-12 and 1e12 but for a few. Looks at some of many, leaves
 /// out what is 0 either way, and says nothing of whole numbers, of which all make sense.
 bool looks_swapped(std::string_view bytes, ScalarType type, bool big_endian);
 

@@ -2,11 +2,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdint>
 #include <fstream>
 #include <functional>
 
 #include "io/grid_fixture.h"
+#include "io/scalars.h"
 #include "io/text_fixture.h"
 #include "support/compress.h"
 #include "support/scalar_bytes.h"
@@ -91,6 +93,20 @@ TEST(Nrrd, WarnsOfTheOtherOrderOfBytes) {
     EXPECT_THAT(warnings_of("float", scalar_bytes<float>(huge, false), encoding), ElementsAre());
     EXPECT_THAT(warnings_of("short", scalar_bytes<std::int16_t>(numbers, true), encoding),
                 ElementsAre());
+  }
+}
+
+TEST(Nrrd, TellsTheOrderOfBytesOfSmoothFields) {
+  for (const double width : {0.5, 2., 8., 1e6}) {
+    std::vector<double> gaussian;
+    for (int n = 0; n < 11 * 11 * 11; ++n) {
+      const int x = n % 11 - 5, y = n / 11 % 11 - 5, z = n / 121 - 5;
+      gaussian.push_back(std::exp(-0.5 * (x * x + y * y + z * z) / (width * width)));
+    }
+    const std::string bytes = scalar_bytes<float>(gaussian, true);
+    EXPECT_FALSE(looks_swapped(bytes, ScalarType::float32, true)) << width;
+    // The narrowest has values beyond all use itself.
+    EXPECT_EQ(looks_swapped(bytes, ScalarType::float32, false), width > 1) << width;
   }
 }
 
