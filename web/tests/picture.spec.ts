@@ -140,6 +140,24 @@ test("plays a trajectory", async ({ screen, view }) => {
   expect((await screen.savedScene()).scene.data.frame).toBe(frame);
 });
 
+test("plays by the space bar whatever the mouse has pressed", async ({ screen, view }) => {
+  await screen.open(await view([`${demo}/silica.json`]));
+  const loop = screen.page.getByRole("button", { name: "Loop" });
+  const looped = await loop.getAttribute("aria-pressed");
+  await loop.click();
+  expect(await loop.getAttribute("aria-pressed")).not.toBe(looped);
+  for (const shown of ["Pause", "Play"]) {
+    await screen.page.keyboard.press("Space");
+    await expect(screen.page.getByRole("button", { name: shown })).toBeVisible();
+  }
+  expect(await loop.getAttribute("aria-pressed")).not.toBe(looped);
+  // Reached by keys, it is what they press.
+  await screen.page.keyboard.press("Tab");
+  await screen.page.keyboard.press("Shift+Tab");
+  await screen.page.keyboard.press("Space");
+  await expect(loop).toHaveAttribute("aria-pressed", looped!);
+});
+
 test("shows statistics on demand", async ({ screen, view }) => {
   await screen.open(await view([zeolite]));
   await screen.canvas.focus();

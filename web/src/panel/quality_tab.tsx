@@ -49,7 +49,7 @@ function KernelSection() {
         min={0.1}
         max={10}
         log
-        onChange={(value) => edit(setKernel({ kernel_scale: value }), "kernel.scale")}
+        onChange={(value) => value > 0 && edit(setKernel({ kernel_scale: value }), "kernel.scale")}
       />
     </Section>
   );

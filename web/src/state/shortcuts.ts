@@ -104,16 +104,24 @@ function nameOf(event: KeyboardEvent): string {
   return `${control}${event.shiftKey ? "Shift+" : ""}${event.key}`;
 }
 
+/** What the mouse has pressed: it keeps the focus, but nobody means it by a key. */
+let clicked: Element | null = null;
+
 /** Whether an element uses keys itself. */
 function takesKeys(target: EventTarget | null, key: string): boolean {
   if (!(target instanceof Element)) return false;
   if (target.closest("dialog, input, select, textarea, [role=menu], [role=slider], [role=tab]")) {
     return true;
   }
-  return (key === " " || key === "Enter") && target.closest("button, a") !== null;
+  const button = target.closest("button, a");
+  return (key === " " || key === "Enter") && button !== null && button !== clicked;
 }
 
 export function listenForKeys(): void {
+  window.addEventListener("focusin", () => (clicked = null));
+  window.addEventListener("click", ({ target, detail }) => {
+    if (detail > 0 && target instanceof Element) clicked = target.closest("button, a");
+  });
   window.addEventListener("keydown", (event) => {
     if (event.defaultPrevented || event.altKey) return;
     const name = nameOf(event);
