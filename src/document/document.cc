@@ -218,7 +218,7 @@ Change Document::rebuild(Next& next, Progress* progress, Warnings& warnings) {
       gather_scene(next.scene, next.fields, particles_, next.grids, progress, warnings);
   if (progress != nullptr) progress->update("building the tree", 0);
   Renderer renderer(particles_, gathered.sources, gathered.geometry);
-  warn_of_missing_bonds(particles_, gathered.geometry, warnings);
+  warn_of_what_is_missing(particles_, gathered.sources, gathered.geometry, renderer, warnings);
   ResolvedScene resolved =
       resolve_with(next, particles_, gathered.sources, gathered.geometry, renderer, progress);
   renderer.prepare(resolved.render.engine);
@@ -236,7 +236,7 @@ Change Document::move(Next& next, Progress* progress, Warnings& warnings) {
   if (progress != nullptr) progress->update("moving the particles", 0);
   try {
     renderer_->set_particles(frame, gathered.sources, gathered.geometry);
-    warn_of_missing_bonds(frame, gathered.geometry, warnings);
+    warn_of_what_is_missing(frame, gathered.sources, gathered.geometry, *renderer_, warnings);
     ResolvedScene resolved =
         resolve_with(next, frame, gathered.sources, gathered.geometry, *renderer_, progress);
     renderer_->prepare(resolved.render.engine);

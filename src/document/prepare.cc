@@ -4,14 +4,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
-#include <string>
+#include <iterator>
 #include <utility>
 #include <vector>
 
 #include "core/error.h"
 #include "particles/bonds.h"
-#include "particles/elements.h"
 #include "render/resolve.h"
 #include "scene/fill_in.h"
 
@@ -40,6 +40,33 @@ void warn_of_want_of_fields(const ParticleSet& particles, const GatheredScene& g
       without, wanting));
 }
 
+void warn_of_missing_bonds(const ParticleSet& particles, const GeometrySource& geometry,
+                           Warnings& warnings) {
+  if (geometry.bonds_among.empty() || !geometry.bonds.empty()) return;
+  const BondRule rule(particles.species_names);
+  const auto& elements = rule.elements();
+  if (std::count(elements.begin(), elements.end(), BondRule::no_element) == std::ssize(elements)) {
+    warnings.add(
+        "sticks: there are no bonds to draw, for none of the species is a chemical element; what "
+        "numbered types are is for --types or data.types to say");
+  } else if (particles.size() > 1 && rule.longest() > 0) {
+    warnings.add(fmt::format(
+        "sticks: there are no bonds to draw: none by distance, which are as long as covalent radii "
+        "in angstrom tell; the data's unit of length: {}",
+        particles.length_unit.empty() ? "unknown" : printable(particles.length_unit)));
+  }
+}
+
+void warn_of_holes(const GridField& field, const FieldSource& source, Warnings& warnings) {
+  const std::size_t holes = field.sampler->num_not_finite(), all = source.grid->size();
+  if (holes == 0) return;
+  warnings.add(
+      holes == all
+          ? fmt::format("the grid '{}' has no finite value", printable(source.name))
+          : fmt::format("{} of {} samples of the grid '{}' are not finite: they count as 0", holes,
+                        all, printable(source.name)));
+}
+
 }  // namespace
 
 GatheredScene gather_scene(const Scene& scene, const std::vector<Field>& fields,
@@ -53,20 +80,12 @@ GatheredScene gather_scene(const Scene& scene, const std::vector<Field>& fields,
   return gathered;
 }
 
-void warn_of_missing_bonds(const ParticleSet& particles, const GeometrySource& geometry,
-                           Warnings& warnings) {
-  if (geometry.bonds_among.empty() || !geometry.bonds.empty()) return;
-  const auto is_element = [](const std::string& name) { return find_element(name) != nullptr; };
-  const auto& names = particles.species_names;
-  if (std::none_of(names.begin(), names.end(), is_element)) {
-    warnings.add(
-        "sticks: there are no bonds to draw, for none of the species is a chemical element; what "
-        "numbered types are is for --types or data.types to say");
-  } else if (particles.size() > 1 && BondRule(names).longest() > 0) {
-    warnings.add(fmt::format(
-        "sticks: there are no bonds to draw: none by distance, which are as long as covalent radii "
-        "in angstrom tell; the data's unit of length: {}",
-        particles.length_unit.empty() ? "unknown" : printable(particles.length_unit)));
+void warn_of_what_is_missing(const ParticleSet& particles, const std::vector<FieldSource>& sources,
+                             const GeometrySource& geometry, const Renderer& renderer,
+                             Warnings& warnings) {
+  warn_of_missing_bonds(particles, geometry, warnings);
+  for (const GridField& field : renderer.grids()) {
+    warn_of_holes(field, sources[field.field], warnings);
   }
 }
 
@@ -88,7 +107,7 @@ PreparedScene prepare_scene(Scene scene, const ParticleSet& particles,
   auto [sources, geometry] = gather_scene(scene, fields, particles, grids, progress, warnings);
   if (progress != nullptr) progress->update("building the tree", 0);
   Renderer renderer(particles, sources, geometry);
-  warn_of_missing_bonds(particles, geometry, warnings);
+  warn_of_what_is_missing(particles, sources, geometry, renderer, warnings);
   ResolvedScene resolved = resolve(scene, particles, visible_fields(fields), sources, geometry,
                                    renderer.kernels(), progress, renderer.grids());
   renderer.prepare(resolved.render.engine);

@@ -25,10 +25,11 @@ GatheredScene gather_scene(const Scene& scene, const std::vector<Field>& fields,
                            const ParticleSet& particles, const std::vector<LoadedGrid>& grids,
                            Progress* progress, Warnings& warnings);
 
-/// Says why sticks are not seen where the atoms, by the file or by distance, have no bonds.
-/// `geometry` is what a Renderer was made with.
-void warn_of_missing_bonds(const ParticleSet& particles, const GeometrySource& geometry,
-                           Warnings& warnings);
+/// Says what is not seen of the data that `renderer` was made of: sticks, where atoms have no bonds
+/// by distance, and samples of grids that are not finite.
+void warn_of_what_is_missing(const ParticleSet& particles, const std::vector<FieldSource>& sources,
+                             const GeometrySource& geometry, const Renderer& renderer,
+                             Warnings& warnings);
 
 /// Where the data are.
 struct DataExtent {

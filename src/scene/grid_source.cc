@@ -32,9 +32,20 @@ std::shared_ptr<const Grid> find_grid(const FieldGrid& field,
 }
 
 std::vector<Isosurface> fit_isosurfaces(const Grid& grid, const FieldColors& colors) {
-  const Signs signs = signs_of(grid.values);
-  const double level = enclosing_level(grid.values, signs);
-  if (signs == Signs::both) return {{level, colors.positive, 1}, {-level, colors.negative, 1}};
+  Signs signs = signs_of(grid.values);
+  double level = enclosing_level(grid.values, signs);
+  if (signs == Signs::both) {
+    const auto reaches = [&](double wanted) {
+      return std::any_of(grid.values.begin(), grid.values.end(), [wanted](float value) {
+        return std::isfinite(value) && (wanted > 0 ? value >= wanted : value <= wanted);
+      });
+    };
+    const bool up = reaches(level), down = reaches(-level);
+    if (up && down) return {{level, colors.positive, 1}, {-level, colors.negative, 1}};
+    // One of them is shallow everywhere, as where the other's spin dominates.
+    signs = up ? Signs::positive : Signs::negative;
+    level = enclosing_level(grid.values, signs);
+  }
   return {{signs == Signs::positive ? level : -level, colors.own, 1}};
 }
 

@@ -274,6 +274,18 @@ TEST_F(Grids, MistakesOfTheSceneAreTold) {
               HasSubstr("is a grid without particles"));
 }
 
+TEST_F(Grids, SamplesThatAreNotFiniteAreCounted) {
+  const auto warnings_of = [&](const std::string& values) {
+    workspace_.write("holes.nrrd", nrrd(values));
+    return run("render holes.nrrd -o a.png --size 16x16").err;
+  };
+  EXPECT_THAT(warnings_of(repeated("0 nan 4", 9)),
+              HasSubstr("9 of 27 samples of the grid 'heat' are not finite: they count as 0"));
+  EXPECT_THAT(warnings_of(repeated("nan inf nan", 9)),
+              HasSubstr("the grid 'heat' has no finite value"));
+  EXPECT_EQ(warnings_of(repeated("0 1 4", 9)), "");
+}
+
 TEST_F(Grids, MistakesOfTheCommandLineAreTold) {
   EXPECT_THAT(failure("render heat.nrrd -o a.png --radius 1", 1), HasSubstr("--radius"));
   EXPECT_THAT(failure("render a.xyz -o a.png --interpolation tricubic", 1),

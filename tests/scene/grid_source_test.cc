@@ -65,6 +65,20 @@ TEST(ExpandFields, FitsIsosurfacesOfGrids) {
   }
 }
 
+TEST(ExpandFields, FitsNoIsosurfaceThatASignDoesNotReach) {
+  Scene scene = scene_of_grids();
+  scene.fields[0].fitted_isosurfaces = true;
+  const auto level_of = [&](const std::vector<float>& values) {
+    const auto fields = expand_fields(scene, {}, {loaded("spin", {values.begin(), values.end()})});
+    EXPECT_EQ(fields[0].isosurfaces.size(), 1u);
+    EXPECT_EQ(std::get<Color>(*fields[0].isosurfaces[0].color), colors_of_grid(0).own);
+    return fields[0].isosurfaces[0].value;
+  };
+  // As if the other sign were not there.
+  EXPECT_EQ(level_of({-0.5F, 4, 0}), 2);
+  EXPECT_EQ(level_of({0.5F, -4, 0}), -2);
+}
+
 /// A bell of that width around a place on the x axis, on n^3 samples in the middle of which it is.
 LoadedGrid bell(const std::string& name, double x, double width, int n, double step) {
   Grid grid;
