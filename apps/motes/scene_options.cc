@@ -120,6 +120,54 @@ SceneChanges::Change read_clip_planes(const std::vector<std::string>& texts) {
   return [planes](Scene& scene) { scene.render.clip_planes = planes; };
 }
 
+/// X,Y,Z or headlight, each with ,INTENSITY or without; nothing where text is none of these.
+std::optional<LightSource> light_in(std::string_view text) {
+  const bool directional = !text.starts_with("headlight");
+  LightSource light;
+  std::string_view rest = text;
+  for (int commas = directional ? 3 : 1; commas > 0; --commas) {
+    const auto comma = rest.find(',');
+    rest.remove_prefix(comma == std::string_view::npos ? rest.size() : comma + 1);
+  }
+  const std::string_view place =
+      rest.empty() ? text : text.substr(0, text.size() - rest.size() - 1);
+  if (directional) {
+    const auto direction = triple_in(place);
+    if (!direction) return std::nullopt;
+    light.direction = {(*direction)[0], (*direction)[1], (*direction)[2]};
+  } else if (place != "headlight") {
+    return std::nullopt;
+  }
+  if (rest.empty()) return light;
+  const auto intensity = number_in(rest);
+  if (!intensity || !(*intensity >= 0) || std::isinf(*intensity)) return std::nullopt;
+  light.intensity = *intensity;
+  return light;
+}
+
+/// Light after light, in place of the scene's own.
+SceneChanges::Change read_lights(const std::vector<std::string>& texts) {
+  std::vector<LightSource> lights;
+  for (const std::string& text : texts) {
+    const auto light = light_in(text);
+    if (!light) {
+      bad_value("--light",
+                "a direction such as 1,2,1.5 or headlight, with an intensity such as in "
+                "headlight,0.4 or without",
+                text);
+    }
+    if (light->direction && !(length(*light->direction) > 0)) {
+      throw Error("--light: a direction must not be zero");
+    }
+    lights.push_back(*light);
+  }
+  if (lights.size() > max_lights) {
+    throw Error(
+        fmt::format("--light: expected at most {} lights, found {}", max_lights, lights.size()));
+  }
+  return [lights](Scene& scene) { scene.render.lighting.lights = lights; };
+}
+
 /// Calls `change` for every field; a scene without any gets the one that it stands for.
 void for_each_field(Scene& scene, const std::function<void(Field&)>& change) {
   if (scene.fields.empty()) scene.fields.emplace_back().name = "all";
@@ -309,8 +357,18 @@ void add_lighting_options(CLI::App& command, SceneChanges& changes) {
              "the light's direction, towards it, for shadows (default: from the camera, none)",
              [](Scene& s, const Vector3d& v) {
                if (!(length(v) > 0)) throw Error("--light-direction: must not be zero");
-               s.render.lighting.direction = v;
+               s.render.lighting.lights = {{v, 1}};
              });
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--light",
+          [&changes](const std::vector<std::string>& texts) {
+            changes.add("--light", read_lights(texts));
+          },
+          "a light: towards it, or headlight, and its intensity (default: 1); may be given again")
+      ->type_name("X,Y,Z[,INTENSITY]")
+      ->allow_extra_args(false)
+      ->excludes("--light-direction");
 }
 
 }  // namespace

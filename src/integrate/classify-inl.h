@@ -299,24 +299,19 @@ struct FrameShading {
   }
 };
 
-/// And a block's.
-struct BlockShading {
-  const FrameShading& frame;
-  Lanes length;  ///< of the rays' directions
-  /// With gradients: half of the unit vectors to the light, and halfway from it to the eye.
+/// Where a light is for a block's rays: half of the unit vectors to it, and halfway from it to the
+/// eye.
+struct LightVectors {
   Lanes half_to_light[3], half_halfway[3];
+  bool headlight;
 
-  BlockShading(LaneTag d, const FrameShading& the_frame, const RayState& rays)
-      : frame(the_frame), length(hn::Load(d, rays.length)) {
-    const ShadingConstants& constants = frame.constants;
+  HWY_INLINE void set(LaneTag d, const LightConstants& light, const Lanes half_to_eye[3]) {
+    headlight = light.headlight;
     for (int i = 0; i < 3; ++i) {
-      half_to_light[i] = half_halfway[i] = hn::Load(d, rays.half_to_eye[i]);
+      half_to_light[i] = headlight ? half_to_eye[i] : hn::Set(d, 0.5f * light.direction[i]);
+      half_halfway[i] = headlight ? half_to_eye[i] : hn::Add(half_to_light[i], half_to_eye[i]);
     }
-    if (constants.headlight || !frame.layout.gradients) return;
-    for (int i = 0; i < 3; ++i) {
-      half_to_light[i] = hn::Set(d, 0.5f * constants.light[i]);
-      half_halfway[i] = hn::Add(half_to_light[i], half_halfway[i]);
-    }
+    if (headlight) return;
     const Lanes sum_sq = hn::MulAdd(
         half_halfway[0], half_halfway[0],
         hn::MulAdd(half_halfway[1], half_halfway[1], hn::Mul(half_halfway[2], half_halfway[2])));
@@ -326,8 +321,27 @@ struct BlockShading {
   }
 };
 
-/// Cosines of samples' normals with the light and with the direction halfway to the eye, of which
-/// the latter is raised to the shininess.
+/// And a block's.
+struct BlockShading {
+  const FrameShading& frame;
+  Lanes length;                     ///< of the rays' directions
+  LightVectors lights[max_lights];  ///< with gradients; as many as constants.lights
+
+  BlockShading(LaneTag d, const FrameShading& the_frame, const RayState& rays)
+      : frame(the_frame), length(hn::Load(d, rays.length)) {
+    if (!frame.layout.gradients) return;
+    const Lanes half_to_eye[3] = {hn::Load(d, rays.half_to_eye[0]),
+                                  hn::Load(d, rays.half_to_eye[1]),
+                                  hn::Load(d, rays.half_to_eye[2])};
+    for (std::size_t l = 0; l < frame.constants.lights.size(); ++l) {
+      lights[l].set(d, frame.constants.lights[l], half_to_eye);
+    }
+  }
+};
+
+/// Of all lights the sums of their intensities times the cosines of samples' normals with the
+/// light, and with the direction halfway to the eye, of which the latter is raised to the
+/// shininess.
 template <std::size_t N>
 struct Light {
   std::array<Lanes, N> diffuse, specular;
@@ -386,11 +400,28 @@ HWY_INLINE Light<N> light_samples(LaneTag d, const BlockShading& shading,
   const ShadingConstants& constants = shading.frame.constants;
   Normals<N> normals;
   normals.load(d, shading.frame, samples);
-  Light<N> light;
-  light.diffuse = light.specular = normals.along(d, shading.half_to_light);
-  if (!constants.headlight) light.specular = normals.along(d, shading.half_halfway);
-  raise<kPlain>(d, constants.shininess, light.specular);
-  return light;
+  const auto light_from = [&](std::size_t l) MOTES_INLINE HWY_ATTR {
+    Light<N> light;
+    light.diffuse = light.specular = normals.along(d, shading.lights[l].half_to_light);
+    if (!shading.lights[l].headlight) {
+      light.specular = normals.along(d, shading.lights[l].half_halfway);
+    }
+    raise<kPlain>(d, constants.shininess, light.specular);
+    return light;
+  };
+  if constexpr (kPlain) return light_from(0);
+  Light<N> sum;
+  sum.diffuse.fill(hn::Zero(d));
+  sum.specular.fill(hn::Zero(d));
+  for (std::size_t l = 0; l < constants.lights.size(); ++l) {
+    const Light<N> light = light_from(l);
+    const Lanes intensity = hn::Set(d, constants.lights[l].intensity);
+    unroll<N>([&](std::size_t n) MOTES_INLINE HWY_ATTR {
+      sum.diffuse[n] = hn::MulAdd(intensity, light.diffuse[n], sum.diffuse[n]);
+      sum.specular[n] = hn::MulAdd(intensity, light.specular[n], sum.specular[n]);
+    });
+  }
+  return sum;
 }
 
 /// What samples add to their rays.
@@ -401,11 +432,13 @@ struct Contributions {
   Light<N> light;                 ///< with gradients
 };
 
-/// Nothing is needed that takes a call: no logarithm, no opacity of thick samples, no power
-/// but is_plain_power().
+/// There is one light of intensity 1, and nothing is needed that takes a call: no logarithm, no
+/// opacity of thick samples, no power but is_plain_power().
 /// Registers need not be kept for it then.
 inline bool is_plain(const FrameShading& frame) {
-  return is_plain_power(frame.constants.shininess) && frame.max_depth <= 1 &&
+  const std::vector<LightConstants>& lights = frame.constants.lights;
+  return lights.size() == 1 && lights[0].intensity == 1 &&
+         is_plain_power(frame.constants.shininess) && frame.max_depth <= 1 &&
          std::none_of(frame.classifiers.begin(), frame.classifiers.end(),
                       [](const Classifier& c) { return c.log_scale; });
 }

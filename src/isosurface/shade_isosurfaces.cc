@@ -105,7 +105,7 @@ class TileShader {
     }
     const Vector3d normal(hit.normal);
     if (hit.opacity >= 1 && has_hard_shadows(light_.shading)) {
-      light.lamp = hard_light(light_, point_of(hit), normal, directions_);
+      add_hard_shadows(light_, point_of(hit), normal, light, directions_);
     }
     hit.color =
         phong(light_.shading.lighting, hit.color, normal, -unit(ray_of(hit).direction), light);

@@ -162,7 +162,6 @@ std::vector<FieldSample> classify_sample(const Volume& volume, const ResolvedSce
                                          const std::vector<Depths>& parts, Pixel& pixel) {
   const Vector3d view = -normalize(ray.direction);
   const Lighting& lighting = scene.render.lighting;
-  const Vector3d light = lighting.direction ? normalize(*lighting.direction) : view;
   std::vector<FieldSample> samples;
   for (std::size_t f = 0; f < fields.size(); ++f) {
     const Depths& part = parts[f];
@@ -187,7 +186,7 @@ std::vector<FieldSample> classify_sample(const Volume& volume, const ResolvedSce
           field.absolute < faintest_normal * volume.largest_peak[f]) {
         pixel.faint = true;
       }
-      sample = shade(sample, lighting, normal_of(field, volume.smallest_radius[f]), view, light);
+      sample = shade(sample, lighting, normal_of(field, volume.smallest_radius[f]), view);
     }
     samples.push_back({sample, part});
   }
@@ -372,17 +371,21 @@ Classified classify(const TransferFunction& transfer_function, double value) {
 }
 
 Classified shade(const Classified& sample, const Lighting& lighting,
-                 const std::optional<Vector3d>& normal, const Vector3d& view,
-                 const Vector3d& light) {
-  double n_dot_l = 0, n_dot_h = 0;
-  if (normal) {
-    n_dot_l = dot(*normal, light);
-    // A light straight behind the sample has no halfway vector, and no highlight.
-    const Vector3d halfway = light + view;
-    if (length(halfway) > 0) n_dot_h = dot(*normal, normalize(halfway));
+                 const std::optional<Vector3d>& normal, const Vector3d& view) {
+  double body = lighting.ambient, highlight = 0;
+  for (const LightSource& light : lighting.lights) {
+    const Vector3d to_light = light.direction ? normalize(*light.direction) : view;
+    double n_dot_l = 0, n_dot_h = 0;
+    if (normal) {
+      n_dot_l = dot(*normal, to_light);
+      // A light straight behind the sample has no halfway vector, and no highlight.
+      const Vector3d halfway = to_light + view;
+      if (length(halfway) > 0) n_dot_h = dot(*normal, normalize(halfway));
+    }
+    body += light.intensity * lighting.diffuse * std::abs(n_dot_l);
+    highlight +=
+        light.intensity * lighting.specular * std::pow(std::abs(n_dot_h), lighting.shininess);
   }
-  const double body = lighting.ambient + lighting.diffuse * std::abs(n_dot_l);
-  const double highlight = lighting.specular * std::pow(std::abs(n_dot_h), lighting.shininess);
   return {sample.red * body + highlight, sample.green * body + highlight,
           sample.blue * body + highlight, sample.extinction};
 }

@@ -65,11 +65,10 @@ struct Classified {
 
 Classified classify(const TransferFunction& transfer_function, double value);
 
-/// Two-sided Phong. `view` and `light` are unit vectors from the sample towards eye and light;
-/// no normal: n.l = n.h = 0.
+/// Two-sided Phong. `view` is the unit vector from the sample towards the eye; no normal: n.l = n.h
+/// = 0.
 Classified shade(const Classified& sample, const Lighting& lighting,
-                 const std::optional<Vector3d>& normal, const Vector3d& view,
-                 const Vector3d& light);
+                 const std::optional<Vector3d>& normal, const Vector3d& view);
 
 /// Red, green, blue (premultiplied) and opacity of what a ray has met.
 struct RayColor {

@@ -63,11 +63,14 @@ ShadingConstants make_shading(const ResolvedScene& scene, const CameraAxes& axes
   shading.diffuse = static_cast<float>(lighting.diffuse);
   shading.specular = static_cast<float>(lighting.specular);
   shading.shininess = static_cast<float>(lighting.shininess);
-  shading.headlight = !lighting.direction.has_value();
-  if (lighting.direction) {
-    const Vector3d l = normalize(*lighting.direction);
+  for (const LightSource& light : lighting.lights) {
+    LightConstants& constants = shading.lights.emplace_back();
+    constants.intensity = static_cast<float>(light.intensity);
+    constants.headlight = !light.direction.has_value();
+    if (constants.headlight) continue;
+    const Vector3d l = normalize(*light.direction);
     const Vector3d rows[3] = {axes.x, axes.y, axes.forward};
-    for (int i = 0; i < 3; ++i) shading.light[i] = static_cast<float>(dot(l, rows[i]));
+    for (int i = 0; i < 3; ++i) constants.direction[i] = static_cast<float>(dot(l, rows[i]));
   }
   for (const FieldKernels& field : kernels.fields) shading.min_radius.push_back(field.min_radius);
   return shading;

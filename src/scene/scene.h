@@ -88,10 +88,19 @@ struct Field {
   }
 };
 
+/// A light that is infinitely far away.
+struct LightSource {
+  std::optional<Vector3d> direction;  ///< towards the light, world axes; nullopt: headlight
+  double intensity = 1;
+  bool operator==(const LightSource&) const = default;
+};
+
+inline constexpr std::size_t max_lights = 8;
+
 struct Lighting {
   bool enabled = true;
   double ambient = 0.3, diffuse = 0.7, specular = 0.2, shininess = 32;
-  std::optional<Vector3d> direction;  ///< towards the light, world axes; nullopt: headlight
+  std::vector<LightSource> lights = {{}};  ///< at most max_lights; their light adds up
   bool operator==(const Lighting&) const = default;
 };
 
@@ -106,7 +115,7 @@ struct SurfaceSettings {
   int occlusion_samples = 16;  ///< rays a pixel; 0: no ambient occlusion
   std::optional<double>
       occlusion_distance;  ///< what is farther away occludes nothing; file's length
-  bool shadows = true;     ///< if the lighting has a direction
+  bool shadows = true;     ///< of lights that have a direction
   double light_angle = 3;  ///< how large the light is seen, degrees; 0: hard shadows
   std::uint32_t seed = 0;  ///< of the directions in which light is looked for
   bool operator==(const SurfaceSettings&) const = default;

@@ -290,20 +290,45 @@ void read_camera(const Value& value, Scene& scene) {
   }
 }
 
+/// Where a light is, if the file says so.
+void read_direction(const Value& value, LightSource& light) {
+  value.with("direction", [&](const Value& v) {
+    light.direction = v.vector();
+    if (!(length(*light.direction) > 0)) v.fail("a direction must not be zero");
+  });
+}
+
+std::vector<LightSource> read_lights(const Value& value) {
+  const auto items = value.array("an array of lights");
+  if (items.size() > max_lights) {
+    value.expected(fmt::format("an array of at most {} lights", max_lights));
+  }
+  std::vector<LightSource> lights;
+  for (const Value& item : items) {
+    item.check_keys({"direction", "intensity"});
+    LightSource& light = lights.emplace_back();
+    read_direction(item, light);
+    item.with("intensity", [&](const Value& v) { light.intensity = v.number_from_zero(); });
+  }
+  return lights;
+}
+
 Lighting read_lighting(const Value& value) {
   if (value.raw().is_boolean()) {
     value.expected(fmt::format("an object such as {{\"enabled\": {}}}", value.boolean()));
   }
   Lighting lighting;
-  value.check_keys({"enabled", "ambient", "diffuse", "specular", "shininess", "direction"});
+  value.check_keys(
+      {"enabled", "ambient", "diffuse", "specular", "shininess", "direction", "lights"});
   value.with("enabled", [&](const Value& v) { lighting.enabled = v.boolean(); });
   value.with("ambient", [&](const Value& v) { lighting.ambient = v.number_from_zero(); });
   value.with("diffuse", [&](const Value& v) { lighting.diffuse = v.number_from_zero(); });
   value.with("specular", [&](const Value& v) { lighting.specular = v.number_from_zero(); });
   value.with("shininess", [&](const Value& v) { lighting.shininess = v.number_from_zero(); });
-  value.with("direction", [&](const Value& v) {
-    lighting.direction = v.vector();
-    if (!(length(*lighting.direction) > 0)) v.fail("a direction must not be zero");
+  read_direction(value, lighting.lights[0]);
+  value.with("lights", [&](const Value& v) {
+    if (lighting.lights[0].direction) value.fail("expected either direction or lights, found both");
+    lighting.lights = read_lights(v);
   });
   return lighting;
 }

@@ -89,19 +89,34 @@ json to_json(const Field& field, const std::filesystem::path& directory) {
   return out;
 }
 
+json to_json(const LightSource& light) {
+  json out = json::object();
+  if (const auto& d = light.direction) out["direction"] = vector_to_json(d->x, d->y, d->z);
+  if (light.intensity != 1) out["intensity"] = light.intensity;
+  return out;
+}
+
+json to_json(const Lighting& lighting) {
+  json out{{"enabled", lighting.enabled},
+           {"ambient", lighting.ambient},
+           {"diffuse", lighting.diffuse},
+           {"specular", lighting.specular},
+           {"shininess", lighting.shininess}};
+  const auto& lights = lighting.lights;
+  if (lights.size() == 1 && lights[0].intensity == 1) {
+    out.update(to_json(lights[0]));
+    return out;
+  }
+  out["lights"] = json::array();
+  for (const LightSource& light : lights) out["lights"].push_back(to_json(light));
+  return out;
+}
+
 json to_json(const RenderSettings& render) {
-  const Lighting& lighting = render.lighting;
   json out{{"size", {render.width, render.height}}};
   if (render.step_size) out["step_size"] = *render.step_size;
   out["termination_opacity"] = render.termination_opacity;
-  out["lighting"] = {{"enabled", lighting.enabled},
-                     {"ambient", lighting.ambient},
-                     {"diffuse", lighting.diffuse},
-                     {"specular", lighting.specular},
-                     {"shininess", lighting.shininess}};
-  if (const auto& d = lighting.direction) {
-    out["lighting"]["direction"] = vector_to_json(d->x, d->y, d->z);
-  }
+  out["lighting"] = to_json(render.lighting);
   if (render.surface != SurfaceSettings{}) out["surface"] = to_json(render.surface);
   for (const ClipPlane& plane : render.clip_planes) {
     const Vector3d& n = plane.normal;

@@ -10,8 +10,11 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
+bool casts_shadows(const LightSource& light) { return light.direction && light.intensity > 0; }
+
 bool has_shadows(const SurfaceShading& shading) {
-  return shading.shadows && shading.lighting.direction.has_value();
+  const Lighting& lighting = shading.lighting;
+  return shading.shadows && lighting.enabled && std::ranges::any_of(lighting.lights, casts_shadows);
 }
 bool has_soft_shadows(const SurfaceShading& shading) {
   return has_shadows(shading) && shading.light_radius > 0;
@@ -57,21 +60,28 @@ Light light_of(const SurfaceFrame& frame, const Spot& spot, int number,
         free_part(shading.occlusion_samples, distance, std::min(distance, frame.prune_distance));
   }
   if (has_soft_shadows(shading)) {
-    scratch.clear();
-    for (const Vector3f& direction : directions_of(frame.lamp, number)) {
-      if (dot(Vector3d(direction), spot.normal) > 0) scratch.push_back(direction);
+    for (std::size_t l = 0; l < frame.lamps.size(); ++l) {
+      if (!casts_shadows(shading.lighting.lights[l])) continue;
+      scratch.clear();
+      for (const Vector3f& direction : directions_of(frame.lamps[l], number)) {
+        if (dot(Vector3d(direction), spot.normal) > 0) scratch.push_back(direction);
+      }
+      light.lamps[l] = free_part(shading.shadow_samples, infinity, infinity);
     }
-    light.lamp = free_part(shading.shadow_samples, infinity, infinity);
   }
   return light;
 }
 
-float hard_light(const SurfaceFrame& frame, const SurfacePoint& point, const Vector3d& normal,
-                 std::vector<Vector3f>& scratch) {
-  const Vector3d& lamp = *frame.shading.lighting.direction;
-  if (dot(lamp, normal) <= 0) return 0;
-  scratch.assign(1, Vector3f(lamp));
-  return static_cast<float>(count_free(frame, point, normal, infinity, infinity, scratch));
+void add_hard_shadows(const SurfaceFrame& frame, const SurfacePoint& point, const Vector3d& normal,
+                      Light& light, std::vector<Vector3f>& scratch) {
+  const std::vector<LightSource>& lights = frame.shading.lighting.lights;
+  for (std::size_t l = 0; l < lights.size(); ++l) {
+    if (!casts_shadows(lights[l])) continue;
+    scratch.clear();
+    if (dot(*lights[l].direction, normal) > 0) scratch.emplace_back(*lights[l].direction);
+    light.lamps[l] =
+        static_cast<float>(count_free(frame, point, normal, infinity, infinity, scratch));
+  }
 }
 
 }  // namespace motes

@@ -17,8 +17,8 @@ bool has_hard_shadows(const SurfaceShading& shading);
 Light light_of(const SurfaceFrame& frame, const Spot& spot, int number,
                std::vector<Vector3f>& scratch);
 
-/// 1 where the light of the lighting's direction reaches a point, else 0.
-float hard_light(const SurfaceFrame& frame, const SurfacePoint& point, const Vector3d& normal,
-                 std::vector<Vector3f>& scratch);
+/// For each light that has a direction: 1 where it reaches a point, else 0.
+void add_hard_shadows(const SurfaceFrame& frame, const SurfacePoint& point, const Vector3d& normal,
+                      Light& light, std::vector<Vector3f>& scratch);
 
 }  // namespace motes

@@ -22,17 +22,21 @@ Color phong(const Lighting& lighting, const Color& base, const Vector3d& normal,
             const Vector3d& view, const Light& light) {
   const double sky = static_cast<double>(light.sky);
   if (!lighting.enabled) return scaled(base, sky, 0);
-  const Vector3d lamp = lighting.direction.value_or(view);
-  // What a headlight does not reach would lie behind what is seen: the open sky stands for it.
-  const double lit = lighting.direction ? static_cast<double>(light.lamp) : sky;
-  const double cosine = dot(normal, lamp);
-  if (!(cosine > 0) || lit == 0) return scaled(base, lighting.ambient * sky, 0);
-  const double mirrored =
-      lighting.direction ? std::max(dot(normal, unit(lamp + view)), 0.0) : cosine;
-  const float gloss =
-      std::pow(static_cast<float>(mirrored), static_cast<float>(lighting.shininess));
-  return scaled(base, lighting.ambient * sky + lit * lighting.diffuse * cosine,
-                lit * lighting.specular * static_cast<double>(gloss));
+  double body = lighting.ambient * sky, highlight = 0;
+  for (std::size_t l = 0; l < lighting.lights.size(); ++l) {
+    const auto& [direction, intensity] = lighting.lights[l];
+    // What a headlight does not reach would lie behind what is seen: the open sky stands for it.
+    const double lit = intensity * (direction ? static_cast<double>(light.lamps[l]) : sky);
+    const double cosine = dot(normal, direction.value_or(view));
+    if (!(cosine > 0) || lit == 0) continue;
+    const double mirrored =
+        direction ? std::max(dot(normal, unit(*direction + view)), 0.0) : cosine;
+    const float gloss =
+        std::pow(static_cast<float>(mirrored), static_cast<float>(lighting.shininess));
+    body += lit * lighting.diffuse * cosine;
+    highlight += lit * lighting.specular * static_cast<double>(gloss);
+  }
+  return scaled(base, body, highlight);
 }
 
 }  // namespace motes

@@ -9,7 +9,7 @@
 namespace motes {
 
 /// The colour of a lit surface (docs/surface.md, "Light"), `base` its own. `view`: unit vector from
-/// the surface to the eye; the lighting's direction, if there is one, is a unit vector.
+/// the surface to the eye; the directions of lights are unit vectors.
 Color phong(const Lighting& lighting, const Color& base, const Vector3d& normal,
             const Vector3d& view, const Light& light);
 

@@ -96,7 +96,7 @@ class TileShader {
         if (point.particle == ray.hit.particle && point.stick == ray.hit.stick) light = lights_[s];
       }
       if (has_hard_shadows(shading_)) {
-        light.lamp = hard_light(frame_, ray.point(), Vector3d(ray.hit.normal), directions_);
+        add_hard_shadows(frame_, ray.point(), Vector3d(ray.hit.normal), light, directions_);
       }
       out.color[at] = phong(shading_.lighting, frame_.colors->of(ray.hit.particle),
                             Vector3d(ray.hit.normal), -unit(ray.direction), light);
@@ -142,10 +142,12 @@ SurfaceFrame make_light_frame(const SurfaceView& view, const ImagePlane& plane,
                               const SurfaceShading& shading) {
   SurfaceFrame frame{nullptr, nullptr, view, plane, shading, {}, {}, {}};
   frame.sky = cosine_directions(shading.occlusion_samples, shading.seed);
-  if (auto& direction = frame.shading.lighting.direction) {
-    *direction = normalize(*direction);
-    frame.lamp =
-        cone_directions(shading.shadow_samples, *direction, shading.light_radius, shading.seed);
+  for (LightSource& light : frame.shading.lighting.lights) {
+    std::vector<Vector3f>& lamp = frame.lamps.emplace_back();
+    if (!light.direction) continue;
+    light.direction = normalize(*light.direction);
+    lamp = cone_directions(shading.shadow_samples, *light.direction, shading.light_radius,
+                           shading.seed);
   }
   return frame;
 }

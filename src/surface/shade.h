@@ -36,8 +36,8 @@ struct SurfaceShading {
   int occlusion_samples = 0;  ///< rays for each pixel's ambient occlusion; 0: there is none
   /// What is farther away occludes nothing; internal length.
   double occlusion_distance = std::numeric_limits<double>::infinity();
-  bool shadows = false;     ///< of the lighting's direction; a headlight casts none
-  double light_radius = 0;  ///< how large the light is seen: half its angle, radians; 0: a point
+  bool shadows = false;     ///< of lights that have a direction; a headlight casts none
+  double light_radius = 0;  ///< how large lights are seen: half their angle, radians; 0: a point
   int shadow_samples = 16;  ///< rays for each pixel's soft shadow, if light_radius > 0
   std::uint32_t seed = 0;   ///< of the directions of all these rays
 };
@@ -54,9 +54,10 @@ struct SurfaceFrame {
   SurfaceView view;
   ImagePlane plane;
   SurfaceShading shading;
-  /// Directions of rays, for each of the 8 x 8 pixels of a pattern that covers the image: about +z,
-  /// and about the direction of the light in world axes.
-  std::vector<Vector3f> sky, lamp;
+  /// Directions of rays about +z, for each of the 8 x 8 pixels of a pattern that covers the image.
+  std::vector<Vector3f> sky;
+  /// And about the direction of each of the lights, in world axes; none for a headlight.
+  std::vector<std::vector<Vector3f>> lamps;
   Pruner prune;  ///< what else hides the light; may be empty
   /// From how far that hides the sky; internal length.
   double prune_distance = std::numeric_limits<double>::infinity();

@@ -50,7 +50,7 @@ std::span<const Spot> Spots::of(int x, int y) const {
 Light Spots::even_light(int x, int y, const Spot& spot) const {
   constexpr int reach = pattern_side / 2;
   float sum = 0;
-  Light light{0, 0};
+  Light light{0, {}};
   for (int dy = -reach; dy <= reach; ++dy) {
     for (int dx = -reach; dx <= reach; ++dx) {
       // The outermost ones count half: then each pixel of the pattern counts the same.
@@ -59,11 +59,15 @@ Light Spots::even_light(int x, int y, const Spot& spot) const {
         if (&other != &spot && !alike(spot, other)) continue;
         sum += weight;
         light.sky += weight * other.light.sky;
-        light.lamp += weight * other.light.lamp;
+        for (std::size_t l = 0; l < max_lights; ++l) {
+          light.lamps[l] += weight * other.light.lamps[l];
+        }
       }
     }
   }
-  return {light.sky / sum, light.lamp / sum};
+  light.sky /= sum;
+  for (float& lamp : light.lamps) lamp /= sum;
+  return light;
 }
 
 }  // namespace motes

@@ -1,19 +1,28 @@
 // Where the pixels of a tile look for light: once for each ball and stick that they show.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
 
 #include "core/vec.h"
+#include "scene/scene.h"
 #include "surface/trace.h"
 
 namespace motes {
 
 /// How much of the light that could reach a point does, 0 to 1.
 struct Light {
-  float sky = 1;   ///< of the ambient light
-  float lamp = 1;  ///< of that of the lighting's direction
+  float sky = 1;                                ///< of the ambient light
+  std::array<float, max_lights> lamps = all();  ///< of each of the lighting's lights
+
+ private:
+  static constexpr std::array<float, max_lights> all() {
+    std::array<float, max_lights> lamps;
+    lamps.fill(1);
+    return lamps;
+  }
 };
 
 /// What a pixel shows of one ball or stick.

@@ -255,6 +255,38 @@ TEST_F(CommandLine, SticksThatLeaveTheCellAreInThePicture) {
   EXPECT_GT(seen, 100);
 }
 
+TEST_F(CommandLine, LightsAddUp) {
+  workspace_.write("p.xyz", "1\n\nC 0 0 0\n");
+  const std::string render = "render p.xyz --size 32x32 --save-scene s.json ";
+  const auto with = [&](const std::string& lights) {
+    succeed(render + "-o a.npy " + lights);
+    const std::vector<float> line = pixels("a.npy");
+    succeed("render s.json -o b.npy");
+    EXPECT_EQ(pixels("b.npy"), line) << lights;
+    return line;
+  };
+  const std::vector<float> none = with("--light headlight,0"), side = with("--light 3,1,1"),
+                           head = with("--light headlight,0.5"),
+                           both = with("--light 3,1,1 --light headlight,0.5");
+  EXPECT_EQ(with("--light-direction 3,1,1"), side);
+  EXPECT_EQ(with("--light headlight,1"), with(""));
+  double brightest = 0;
+  for (std::size_t i = 0; i < both.size(); ++i) {
+    EXPECT_NEAR(both[i], side[i] + head[i] - none[i], 1e-5);
+    brightest = std::max<double>(brightest, both[i] - side[i]);
+  }
+  EXPECT_GT(brightest, 0.05);
+  const std::string expected = "--light: expected a direction such as 1,2,1.5 or headlight";
+  for (const std::string bad : {"1,2", "1,2,3,4,5", "headlights", "headlight,x", "1,2,3,-1",
+                                "1,2,3,", "headlight,", "headlight,inf", "''"}) {
+    EXPECT_THAT(failure("render p.xyz -o a.npy --light " + bad, 2), HasSubstr(expected)) << bad;
+  }
+  EXPECT_THAT(failure("render p.xyz -o a.npy --light 0,0,0", 1), HasSubstr("zero"));
+  std::string nine;
+  for (int i = 0; i < 9; ++i) nine += " --light headlight";
+  EXPECT_THAT(failure("render p.xyz -o a.npy" + nine, 1), HasSubstr("at most 8 lights, found 9"));
+}
+
 TEST_F(CommandLine, ALightFromASideThrowsShadows) {
   workspace_.write("p.xyz", "2\n\nC 0 0 0\nO 0 0 4\n");
   const std::string render =

@@ -100,21 +100,33 @@ TEST(ReferenceShade, IsTwoSidedPhong) {
                           .diffuse = 0.7,
                           .specular = 0.2,
                           .shininess = 2,
-                          .direction = {}};
+                          .lights = {{Vector3d{0, 2, 0}}}};
   const Classified sample{1, 0.5, 0, 9};
-  const Vector3d view{0, 0, 1}, light{0, 1, 0};
+  const Vector3d view{0, 0, 1};
   // n.l = 0.6, n.h = (0.8 + 0.6) / sqrt 2, squared 0.98.
   for (const double side : {1., -1.}) {
     const Vector3d normal{0, side * 0.6, side * 0.8};
-    const Classified lit = shade(sample, lighting, normal, view, light);
+    const Classified lit = shade(sample, lighting, normal, view);
     EXPECT_NEAR(lit.red, 0.3 + 0.7 * 0.6 + 0.2 * 0.98, 1e-15);
     EXPECT_NEAR(lit.green, 0.5 * (0.3 + 0.7 * 0.6) + 0.2 * 0.98, 1e-15);
     EXPECT_NEAR(lit.blue, 0.2 * 0.98, 1e-15);
     EXPECT_EQ(lit.extinction, 9);
   }
-  EXPECT_NEAR(shade(sample, lighting, {}, view, light).red, 0.3, 1e-15);
+  EXPECT_NEAR(shade(sample, lighting, {}, view).red, 0.3, 1e-15);
   // Lit from straight behind: no halfway vector.
-  EXPECT_NEAR(shade(sample, lighting, view, view, -view).red, 0.3 + 0.7, 1e-15);
+  const Lighting behind{.ambient = 0.3, .diffuse = 0.7, .specular = 0.2, .lights = {{-view}}};
+  EXPECT_NEAR(shade(sample, behind, view, view).red, 0.3 + 0.7, 1e-15);
+}
+
+TEST(ReferenceShade, LightsAddUp) {
+  const auto red = [](const std::vector<LightSource>& lights) {
+    const Lighting lighting{.ambient = 0.3, .shininess = 2, .lights = lights};
+    return shade({1, 0.5, 0, 9}, lighting, Vector3d{0, 0.6, 0.8}, {0, 0, 1}).red;
+  };
+  const LightSource above{Vector3d{0, 1, 0}, 1}, head;
+  EXPECT_NEAR(red({}), 0.3, 1e-15);
+  EXPECT_NEAR(red({{above.direction, 0.5}, {{}, 2}}),
+              0.3 + 0.5 * (red({above}) - 0.3) + 2 * (red({head}) - 0.3), 1e-15);
 }
 
 TEST(ReferenceVolume, ReachesTheLargestSupportBeyondAllCenters) {
@@ -287,7 +299,7 @@ TEST(ReferenceRender, ShadesWithTheFieldsOwnNormal) {
                              .diffuse = 0.5,
                              .specular = 0.125,
                              .shininess = 32,
-                             .direction = {}};
+                             .lights = {{}}};
   const double opacity = 1 - std::exp(-0.3 * 0.25);
   double red = 0, clear = 1;
   for (double z = -0.875; z < 1.2; z += 0.25) {

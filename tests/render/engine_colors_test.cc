@@ -48,7 +48,7 @@ TEST(Engines, EveryShininessFromTheSide) {
   PlainScene s = plain_scene({{0, 0, 0}, {1, 1, 0}, {-1, 1, 1}}, 10);
   s.scene.transfer_functions = {ramp(1, 0.3)};
   s.scene.render.lighting.enabled = true;
-  s.scene.render.lighting.direction = Vector3d{-0.5, 0.7, 0.4};
+  s.scene.render.lighting.lights = {{Vector3d{-0.5, 0.7, 0.4}}};
   for (int fields = 1; fields <= 2; ++fields) {
     for (const double shininess : {0.0, 0.5, 1.0, 3.0, 20.0, 32.0, 1023.0, 2000.0}) {
       s.scene.render.lighting.shininess = shininess;

@@ -107,7 +107,7 @@ TEST(Isosurface, ThatIsTranslucentTakesNoLight) {
   PlainScene s = one_kernel();
   s.scene.transfer_functions = {{{{0, {}, 0}}}};
   s.scene.render.surface = {3, 64, {}, true, 5};
-  s.scene.render.lighting.direction = Vector3d{1, 1, 1};
+  s.scene.render.lighting.lights = {{Vector3d{1, 1, 1}}};
   s.scene.camera.eye = {0, 0, 7};
   GeometrySource within = ball(0.8F, 0xffffff);
   const Renderer renderer(s.particles, s.scene.fields, within);

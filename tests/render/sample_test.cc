@@ -151,7 +151,7 @@ TEST(EngineSamples, NormalsAreThoseOfTheReference) {
                                        .diffuse = 1,
                                        .specular = 0,
                                        .shininess = 1,
-                                       .direction = light};
+                                       .lights = {{light}}};
       for (const Way& way : all_ways()) {
         const Framebuffer image = render_in(way, renderer, plane.scene());
         for (int i = 0; i < width * height; ++i) {

@@ -88,7 +88,7 @@ TEST(ParseScene, ReadsEverything) {
   EXPECT_EQ(scene.render.height, 480);
   EXPECT_EQ(scene.render.step_size, 0.5);
   EXPECT_EQ(scene.render.termination_opacity, 0.99);
-  EXPECT_EQ(scene.render.lighting, (Lighting{false, 0.1, 0.2, 0.4, 8, Vector3d{1, 2, 3}}));
+  EXPECT_EQ(scene.render.lighting, (Lighting{false, 0.1, 0.2, 0.4, 8, {{Vector3d{1, 2, 3}}}}));
   EXPECT_EQ(scene.render.background, (Color{1, 1, 1}));
   EXPECT_EQ(scene.render.engine, Engine::direct);
 }
@@ -280,6 +280,18 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{R"("render": {"lighting": {"shininess": -1}})", "render.lighting.shininess: exp"},
         Refusal{R"("render": {"lighting": {"direction": [0, 0, 0]}})",
                 "render.lighting.direction: a direction must not be zero"},
+        Refusal{R"("render": {"lighting": {"lights": {}}})",
+                "render.lighting.lights: expected an array of lights"},
+        Refusal{R"("render": {"lighting": {"lights": [{}, {"direction": [0, 0, 0]}]}})",
+                "render.lighting.lights[1].direction: a direction must not be zero"},
+        Refusal{R"("render": {"lighting": {"lights": [{"intensity": -1}]}})",
+                "render.lighting.lights[0].intensity: expected a number of 0 or more"},
+        Refusal{R"("render": {"lighting": {"lights": [{"color": "#ffffff"}]}})",
+                "render.lighting.lights[0]"},
+        Refusal{R"("render": {"lighting": {"lights": [{},{},{},{},{},{},{},{},{}]}})",
+                "render.lighting.lights: expected an array of at most 8 lights"},
+        Refusal{R"("render": {"lighting": {"direction": [1, 0, 0], "lights": [{}]}})",
+                "render.lighting: expected either direction or lights, found both"},
         Refusal{R"("render": {"lighting": false})",
                 "render.lighting: expected an object such as {\"enabled\": false}, found false"},
         Refusal{R"("render": {"clip_planes": {}})", "render.clip_planes: expected an array of pl"},
@@ -433,7 +445,12 @@ RC_GTEST_PROP(SceneToJson, ReadsBackEqual, ()) {
   scene.render.width = *rc::gen::inRange(1, 16385);
   scene.render.step_size = maybe([] { return random_double(1, 30); });
   scene.render.termination_opacity = random_double(1, 8);
-  scene.render.lighting.direction = maybe(random_vector);
+  std::vector<LightSource>& lights = scene.render.lighting.lights;
+  lights.resize(*rc::gen::inRange(0u, 4u));
+  for (LightSource& light : lights) {
+    light.direction = maybe(random_vector);
+    if (*rc::gen::arbitrary<bool>()) light.intensity = random_double(1, 30);
+  }
   scene.render.lighting.enabled = *rc::gen::arbitrary<bool>();
   scene.render.background = color_from_srgb(*rc::gen::inRange(0u, 0x1000000u));
   if (*rc::gen::arbitrary<bool>()) scene.render.background.g = 1 / 3.0f;

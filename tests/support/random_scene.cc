@@ -214,7 +214,13 @@ Lighting draw_lighting(Draw& draw) {
   lighting.diffuse = draw.uniform(0, 1);
   lighting.specular = draw.chance(0.3) ? 0 : draw.uniform(0, 0.4);
   lighting.shininess = draw.log_uniform(1, 60);
-  if (draw.chance(0.4)) lighting.direction = 3. * draw.direction();
+  if (draw.chance(0.4)) lighting.lights[0].direction = 3. * draw.direction();
+  if (draw.chance(0.2)) {
+    lighting.lights[0].intensity = draw.uniform(0, 1);
+    for (int n = draw.below(3); n > 0; --n) {
+      lighting.lights.push_back({draw.direction(), draw.uniform(0, 1)});
+    }
+  }
   return lighting;
 }
 

@@ -218,7 +218,7 @@ TEST(Shade, TellsTheSameOfAPixelWhateverTheRectAndTheThreads) {
   SurfaceShading shading;
   shading.occlusion_samples = 8;
   shading.shadows = true;
-  shading.lighting.direction = Vector3d{1, 2, 3};
+  shading.lighting.lights = {{Vector3d{1, 2, 3}}, {Vector3d{-3, 1, 2}, 0.5}};
   shading.light_radius = 0.05;
   const SurfaceFrame frame = make_surface_frame(pile.surface, pile.view, pile.plane, shading);
   SurfaceSamples whole;
@@ -244,16 +244,22 @@ TEST(Shade, TellsTheSameOfAPixelWhateverTheRectAndTheThreads) {
   });
 }
 
-/// The formula of docs/surface.md.
+/// The formula of docs/surface.md; `lit` tells of each light whether it is reached.
 Color expected_color(const Lighting& lighting, const Color& base, const Vector3d& normal,
-                     const Vector3d& direction, double sky, double lit) {
+                     const Vector3d& direction, double sky, const std::vector<double>& lit) {
   const Vector3d view = normalize(-direction);
-  const Vector3d lamp = lighting.direction ? normalize(*lighting.direction) : view;
-  const double cosine = std::max(dot(normal, lamp), 0.0);
-  const double mirrored = std::max(dot(normal, normalize(lamp + view)), 0.0);
-  const double body = lighting.ambient * sky + lighting.diffuse * lit * cosine;
-  const double gloss =
-      cosine > 0 ? lighting.specular * lit * std::pow(mirrored, lighting.shininess) : 0;
+  double body = lighting.ambient * sky, gloss = 0;
+  for (std::size_t l = 0; l < lighting.lights.size(); ++l) {
+    const LightSource& light = lighting.lights[l];
+    const Vector3d lamp = light.direction ? normalize(*light.direction) : view;
+    const double cosine = std::max(dot(normal, lamp), 0.0);
+    const double mirrored = std::max(dot(normal, normalize(lamp + view)), 0.0);
+    body += lighting.diffuse * light.intensity * lit[l] * cosine;
+    if (cosine > 0) {
+      gloss +=
+          lighting.specular * light.intensity * lit[l] * std::pow(mirrored, lighting.shininess);
+    }
+  }
   return {static_cast<float>(base.r * body + gloss), static_cast<float>(base.g * body + gloss),
           static_cast<float>(base.b * body + gloss)};
 }
@@ -273,7 +279,9 @@ TEST(Shade, KeepsToItsFormulasForHardShadows) {
     const RandomView random = random_view(scene, seed);
     SurfaceShading shading;
     shading.shadows = seed % 5 != 0;
-    if (seed % 3 != 0) shading.lighting.direction = Vector3d{0.3, 2, -1};
+    std::vector<LightSource>& lights = shading.lighting.lights;
+    if (seed % 3 != 0) lights[0].direction = Vector3d{0.3, 2, -1};
+    if (seed % 2 != 0) lights.push_back({Vector3d{-2, 0.1, 0.4}, 0.6});
     const double half = std::abs(random.grid.du) * random.grid.width / 2;
     const ImagePlane plane{half, half * 13 / 17, 17, 13, 2};
     const SurfaceSamples samples = render(scene.surface, random.view, plane, shading);
@@ -285,22 +293,24 @@ TEST(Shade, KeepsToItsFormulasForHardShadows) {
       // What is hit where is the business of trace().
       const SurfaceHit hit = trace(scene.surface, line.origin, line.direction);
       if (!hit.any() || !(std::abs(hit.depth - depth) < 1e-9 * hit.depth)) continue;
-      double light = 1;
-      if (shading.shadows && shading.lighting.direction) {
-        const Line to_lamp{line.at(depth), *shading.lighting.direction};
-        light = is_free(to_lamp, solids, hit, infinity) ? 1 : 0;
-        // Grazed: whether it is in shadow is a matter of rounding.
-        std::vector<Solid> larger = solids, smaller = solids;
-        for (Solid& s : larger) s.radius *= 1 + 1e-4;
-        for (Solid& s : smaller) s.radius *= 1 - 1e-4;
-        if (is_free(to_lamp, larger, hit, infinity) != is_free(to_lamp, smaller, hit, infinity)) {
-          continue;
-        }
+      // Grazed: whether it is in shadow is a matter of rounding.
+      std::vector<Solid> larger = solids, smaller = solids;
+      for (Solid& s : larger) s.radius *= 1 + 1e-4;
+      for (Solid& s : smaller) s.radius *= 1 - 1e-4;
+      bool grazed = false;
+      std::vector<double> reached(lights.size(), 1);
+      for (std::size_t l = 0; l < lights.size(); ++l) {
+        if (!shading.shadows || !lights[l].direction) continue;
+        const Line to_lamp{line.at(depth), *lights[l].direction};
+        reached[l] = is_free(to_lamp, solids, hit, infinity) ? 1 : 0;
+        grazed |=
+            is_free(to_lamp, larger, hit, infinity) != is_free(to_lamp, smaller, hit, infinity);
+        (reached[l] > 0 ? lit : dark) += 1;
       }
-      (light > 0 ? lit : dark) += 1;
+      if (grazed) continue;
       expect_near(samples.color[static_cast<std::size_t>(i)],
                   expected_color(shading.lighting, scene.surface.colors.palette[0],
-                                 Vector3d(hit.normal), line.direction, 1, light),
+                                 Vector3d(hit.normal), line.direction, 1, reached),
                   fmt::format("{}\n{}\nsample {}", scene.description, random.description, i));
       if (HasFailure()) return;
     }
@@ -320,7 +330,7 @@ TEST(Shade, SoftShadowsAreThePartOfTheLampThatIsSeen) {
   shading.shadows = true;
   shading.light_radius = 0.02;
   const auto lit = [&](double angle) {
-    shading.lighting.direction = Vector3d{std::sin(angle), 0, std::cos(angle)};
+    shading.lighting.lights[0].direction = Vector3d{std::sin(angle), 0, std::cos(angle)};
     return balls.middle(shading).r / std::cos(angle);
   };
   EXPECT_NEAR(lit(edge), 0.5, 0.01);
@@ -329,6 +339,12 @@ TEST(Shade, SoftShadowsAreThePartOfTheLampThatIsSeen) {
   // Beyond a line at half its radius lies this part of a disc.
   const double segment = (std::acos(0.5) - 0.5 * std::sqrt(0.75)) / std::numbers::pi;
   EXPECT_NEAR(lit(edge - 0.5 * shading.light_radius), 1 - segment, 0.01);
+  // Each of several lights has its own shadow.
+  const auto towards = [](double angle) { return Vector3d{std::sin(angle), 0, std::cos(angle)}; };
+  shading.lighting.lights = {
+      {towards(edge + 0.1), 1}, {towards(edge), 0.5}, {towards(-0.2), 2}, {{}, 0.25}};
+  EXPECT_NEAR(balls.middle(shading).r, 0.5 * 0.5 * std::cos(edge) + 2 * std::cos(0.2) + 0.25 * 1,
+              0.005);
 }
 
 TEST(Shade, GivesEachParticleItsColour) {

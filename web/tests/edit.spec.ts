@@ -109,6 +109,15 @@ test("changes background and light", async ({ screen, view }) => {
   await screen.change(() => page.getByRole("button", { name: "White" }).click());
   expect((await screen.savedScene()).scene.render.background).toMatch(/^(#ffffff|white)$/);
   await screen.change(() => page.getByRole("slider", { name: "Ambient", exact: true }).fill("300"));
+  const lights = async () => (await screen.savedScene()).scene.render.lighting.lights;
+  const one = await screen.picture();
+  await screen.change(() => page.getByRole("button", { name: "Another light" }).click());
+  expect(await lights()).toEqual([{}, { direction: expect.any(Array), intensity: 0.5 }]);
+  expect((await screen.picture()).equals(one)).toBe(false);
+  await screen.change(() => page.getByText("at the camera").last().click());
+  expect(await lights()).toEqual([{}, { intensity: 0.5 }]);
+  await screen.change(() => page.getByRole("button", { name: "Remove this light" }).last().click());
+  expect((await screen.picture()).equals(one)).toBe(true);
   await screen.change(() => page.getByRole("switch", { name: "Lighting" }).click());
 });
 

@@ -1,16 +1,12 @@
 // Background, light, and how surfaces are lit.
 import { useId } from "preact/hooks";
-import { basisOf } from "../camera/camera";
-import { normalized } from "../camera/vector";
 import { Button } from "../controls/button";
 import { ColorField, Row, Slider, Toggle } from "../controls/fields";
 import { Section } from "../controls/section";
-import type { Lighting, Vector } from "../protocol/scene";
-import { setLighting, setRender, setSurface } from "../scene/edit";
+import { type Lighting, maxLights } from "../protocol/scene";
+import { lightsOf, setLighting, setLights, setRender, setSurface } from "../scene/edit";
 import { edit, scene } from "../state/document";
-import { camera } from "../state/view";
-
-const degrees = 180 / Math.PI;
+import { LightItem, overTheShoulder } from "./light_item";
 
 function BackgroundSection() {
   const id = useId();
@@ -27,64 +23,39 @@ function BackgroundSection() {
   );
 }
 
-/** In the world: degrees around y from z towards x, and above the plane of x and z. */
-function DirectionRows({ direction }: { direction: Vector }) {
-  const [x, y, z] = normalized(direction);
-  const around = Math.atan2(x, z) * degrees;
-  const above = Math.asin(y) * degrees;
-  const set = (nextAround: number, nextAbove: number) => {
-    const a = nextAround / degrees;
-    const b = nextAbove / degrees;
-    const next: Vector = [Math.sin(a) * Math.cos(b), Math.sin(b), Math.cos(a) * Math.cos(b)];
-    edit(setLighting({ direction: next }), "light.direction");
-  };
-  return (
-    <>
-      <Slider
-        label="Around"
-        value={around}
-        min={-180}
-        max={180}
-        onChange={(next) => set(next, above)}
-      />
-      <Slider
-        label="Above"
-        value={above}
-        min={-89}
-        max={89}
-        onChange={(next) => set(around, next)}
-      />
-    </>
-  );
-}
-
 function LightSection() {
   const lighting: Lighting = scene.value!.render?.lighting ?? {};
-  const { enabled = true, direction } = lighting;
+  const { enabled = true } = lighting;
+  const lights = lightsOf(lighting);
   const set = (patch: Partial<Lighting>, what: string | null = null) =>
     edit(setLighting(patch), what && `light.${what}`);
-  const fromHere = () => {
-    if (!camera.peek()) return;
-    const { right, up, forward } = basisOf(camera.peek()!);
-    // From over the left shoulder.
-    set({
-      direction: normalized(
-        [0, 1, 2].map((i) => up[i]! - 0.7 * right[i]! - 1.2 * forward[i]!) as Vector,
-      ),
-    });
-  };
   return (
     <Section title="Light">
       <Toggle label="Lighting" checked={enabled} onChange={(on) => set({ enabled: on })} />
       {enabled && (
         <>
-          <Toggle
-            label="From the camera"
-            checked={direction === undefined}
-            onChange={(on) => (on ? set({ direction: undefined }) : fromHere())}
-          />
-          {direction && <DirectionRows direction={direction} />}
-          {direction && <Button onClick={fromHere}>From over the shoulder</Button>}
+          {lights.length === 0 && <p class="quiet">Ambient light only.</p>}
+          <ul class="items">
+            {lights.map((light, index) => (
+              <LightItem key={index} light={light} index={index} />
+            ))}
+          </ul>
+          <div class="buttons">
+            <Button
+              icon="add"
+              disabled={lights.length >= maxLights}
+              onClick={() =>
+                edit(
+                  setLights((old) => [
+                    ...old,
+                    { direction: overTheShoulder() ?? [1, 2, 1.5], intensity: 0.5 },
+                  ]),
+                )
+              }
+            >
+              Another light
+            </Button>
+          </div>
           <Slider
             label="Ambient"
             value={lighting.ambient ?? 0.3}
@@ -122,7 +93,8 @@ function LightSection() {
 
 function SurfaceSection() {
   const surface = scene.value!.render?.surface ?? {};
-  const directed = scene.value!.render?.lighting?.direction !== undefined;
+  const lights = lightsOf(scene.value!.render?.lighting ?? {});
+  const directed = lights.some(({ direction }) => direction);
   return (
     <Section title="Balls, sticks and isosurfaces">
       <Slider
@@ -150,7 +122,7 @@ function SurfaceSection() {
       />
       {(surface.shadows ?? true) && directed && (
         <Slider
-          label="Size of the light (°)"
+          label="Size of lights (°)"
           value={surface.light_angle ?? 3}
           min={0}
           max={30}

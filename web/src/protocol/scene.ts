@@ -90,14 +90,24 @@ export interface Geometry {
   bonds?: string;
 }
 
+export interface LightSource {
+  /** Towards the light; none: from the camera. */
+  direction?: Vector;
+  intensity?: number;
+}
+
+export const maxLights = 8;
+
 export interface Lighting {
   enabled?: boolean;
   ambient?: number;
   diffuse?: number;
   specular?: number;
   shininess?: number;
-  /** Towards the light; none: from the camera. */
+  /** Of the only light. */
   direction?: Vector;
+  /** Instead of the direction; none: one light, from the camera. */
+  lights?: LightSource[];
 }
 
 export interface SurfaceSettings {

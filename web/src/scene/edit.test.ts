@@ -1,6 +1,6 @@
 import { expect, it } from "vitest";
 import type { Scene } from "../protocol/scene";
-import { newFieldName, setGeometry, styleOf, withStyle } from "./edit";
+import { lightsOf, newFieldName, setGeometry, setLights, styleOf, withStyle } from "./edit";
 
 const points = { points: [{ value: 0, color: "#000000", extinction: 1 }] };
 const volume: Scene = {
@@ -47,6 +47,18 @@ it("makes surfaces of the grids that there are", () => {
 
 it("leaves no empty geometry", () => {
   expect(setGeometry(() => [])(balls)).toEqual({ version: 1, fields: [] });
+});
+
+it("makes a list of the lights whichever way they are written", () => {
+  expect(lightsOf({})).toEqual([{}]);
+  expect(lightsOf({ direction: [1, 0, 0] })).toEqual([{ direction: [1, 0, 0] }]);
+  expect(lightsOf({ lights: [] })).toEqual([]);
+  const one: Scene = { version: 1, render: { lighting: { diffuse: 1, direction: [1, 0, 0] } } };
+  const two = setLights((lights) => [...lights, { intensity: 0.5 }])(one);
+  expect(two.render!.lighting).toEqual({
+    diffuse: 1,
+    lights: [{ direction: [1, 0, 0] }, { intensity: 0.5 }],
+  });
 });
 
 it("finds free names", () => {

@@ -5,6 +5,7 @@ import type {
   Geometry,
   Kernel,
   Lighting,
+  LightSource,
   NamedTransferFunction,
   RenderSettings,
   Scene,
@@ -23,6 +24,17 @@ export const setLighting =
   (patch: Partial<Lighting>): Change =>
   (scene) =>
     setRender({ lighting: { ...scene.render?.lighting, ...patch } })(scene);
+
+export const lightsOf = ({ direction, lights }: Lighting): LightSource[] =>
+  lights ?? [direction ? { direction } : {}];
+
+export const setLights =
+  (change: (lights: LightSource[]) => LightSource[]): Change =>
+  (scene) =>
+    setLighting({
+      direction: undefined,
+      lights: change(lightsOf(scene.render?.lighting ?? {})),
+    })(scene);
 
 export const setSurface =
   (patch: Partial<SurfaceSettings>): Change =>
