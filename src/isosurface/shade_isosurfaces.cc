@@ -77,9 +77,7 @@ class TileShader {
           spots_.add({point_of(hits.back()), Vector3d(hits.back().normal), {}});
         }
         const int number = pattern_number(tile_.x + x - margin_, tile_.y + y - margin_);
-        for (Spot& spot : spots_.end_pixel()) {
-          spot.light = light_of(light_, spot, number, directions_);
-        }
+        motes::light_spots(light_, spots_.end_pixel(), number, directions_);
       }
     }
     for (int y = 0; y < tile_.height; ++y) {

@@ -30,6 +30,53 @@ int count_free(const SurfaceFrame& frame, SurfacePoint from, const Vector3d& nor
   return num_unoccluded(*frame.surface, from, directions, length);
 }
 
+/// A spot among those of its pixel, which is of that number of the pattern.
+struct Place {
+  int number;
+  std::size_t spot, num_spots;
+
+  /// Those of the directions that are the spot's: all of the pixel's or, of a crowded pixel, its
+  /// share of what few_spots have.
+  std::span<const Vector3f> of(std::span<const Vector3f> all) const {
+    const std::span<const Vector3f> directions = directions_of(all, number);
+    if (num_spots <= few_spots) return directions;
+    const std::size_t share = std::max<std::size_t>(few_spots * directions.size() / num_spots, 1);
+    return directions.subspan(spot % (directions.size() / share) * share, share);
+  }
+};
+
+Light light_of(const SurfaceFrame& frame, const Spot& spot, const Place& place,
+               std::vector<Vector3f>& scratch) {
+  const SurfaceShading& shading = frame.shading;
+  const auto free_part = [&](std::size_t count, double length, double prune_length) {
+    const int free = count_free(frame, spot.point, spot.normal, length, prune_length, scratch);
+    return static_cast<float>(free) / static_cast<float>(count);
+  };
+  Light light;
+  if (shading.occlusion_samples > 0) {
+    const Across sides = across(spot.normal);
+    const std::span<const Vector3f> directions = place.of(frame.sky);
+    scratch.clear();
+    for (const Vector3f& direction : directions) {
+      const Vector3d d(direction);
+      scratch.emplace_back(d.x * sides.x + d.y * sides.y + d.z * spot.normal);
+    }
+    const double distance = shading.occlusion_distance;
+    light.sky = free_part(directions.size(), distance, std::min(distance, frame.prune_distance));
+  }
+  if (!has_soft_shadows(shading)) return light;
+  for (std::size_t l = 0; l < frame.lamps.size(); ++l) {
+    if (!casts_shadows(shading.lighting.lights[l])) continue;
+    const std::span<const Vector3f> directions = place.of(frame.lamps[l]);
+    scratch.clear();
+    for (const Vector3f& direction : directions) {
+      if (dot(Vector3d(direction), spot.normal) > 0) scratch.push_back(direction);
+    }
+    light.lamps[l] = free_part(directions.size(), infinity, infinity);
+  }
+  return light;
+}
+
 }  // namespace
 
 bool has_spots(const SurfaceShading& shading) {
@@ -40,36 +87,11 @@ bool has_hard_shadows(const SurfaceShading& shading) {
   return has_shadows(shading) && !has_soft_shadows(shading);
 }
 
-Light light_of(const SurfaceFrame& frame, const Spot& spot, int number,
-               std::vector<Vector3f>& scratch) {
-  const SurfaceShading& shading = frame.shading;
-  const auto free_part = [&](int count, double length, double prune_length) {
-    const int free = count_free(frame, spot.point, spot.normal, length, prune_length, scratch);
-    return static_cast<float>(free) / static_cast<float>(count);
-  };
-  Light light;
-  if (shading.occlusion_samples > 0) {
-    const Across sides = across(spot.normal);
-    scratch.clear();
-    for (const Vector3f& direction : directions_of(frame.sky, number)) {
-      const Vector3d d(direction);
-      scratch.emplace_back(d.x * sides.x + d.y * sides.y + d.z * spot.normal);
-    }
-    const double distance = shading.occlusion_distance;
-    light.sky =
-        free_part(shading.occlusion_samples, distance, std::min(distance, frame.prune_distance));
+void light_spots(const SurfaceFrame& frame, std::span<Spot> spots, int number,
+                 std::vector<Vector3f>& scratch) {
+  for (std::size_t s = 0; s < spots.size(); ++s) {
+    spots[s].light = light_of(frame, spots[s], {number, s, spots.size()}, scratch);
   }
-  if (has_soft_shadows(shading)) {
-    for (std::size_t l = 0; l < frame.lamps.size(); ++l) {
-      if (!casts_shadows(shading.lighting.lights[l])) continue;
-      scratch.clear();
-      for (const Vector3f& direction : directions_of(frame.lamps[l], number)) {
-        if (dot(Vector3d(direction), spot.normal) > 0) scratch.push_back(direction);
-      }
-      light.lamps[l] = free_part(shading.shadow_samples, infinity, infinity);
-    }
-  }
-  return light;
 }
 
 void add_hard_shadows(const SurfaceFrame& frame, const SurfacePoint& point, const Vector3d& normal,

@@ -66,9 +66,7 @@ class TileShader {
           if (ray.hit.any()) spots_.add({ray.point(), Vector3d(ray.hit.normal), {}});
         }
         const int number = pattern_number(tile_.x + x, tile_.y + y);
-        for (Spot& spot : spots_.end_pixel()) {
-          spot.light = light_of(frame_, spot, number, directions_);
-        }
+        motes::light_spots(frame_, spots_.end_pixel(), number, directions_);
       }
     }
   }

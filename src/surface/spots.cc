@@ -48,6 +48,7 @@ std::span<const Spot> Spots::of(int x, int y) const {
 }
 
 Light Spots::even_light(int x, int y, const Spot& spot) const {
+  if (of(x, y).size() > few_spots) return spot.light;
   constexpr int reach = pattern_side / 2;
   float sum = 0;
   Light light{0, {}};

@@ -25,6 +25,10 @@ struct Light {
   }
 };
 
+/// A pixel that shows more spots is crowded: what it shows is so small that its spots share its
+/// rays to the light, and have nothing around them that they could be evened out with.
+inline constexpr std::size_t few_spots = 4;
+
 /// What a pixel shows of one ball or stick.
 struct Spot {
   SurfacePoint point;
@@ -45,8 +49,8 @@ class Spots {
   /// The spots of pixel (x, y).
   std::span<const Spot> of(int x, int y) const;
   /// The light of a spot of pixel (x, y), evened out over the pattern of directions: the mean of
-  /// those around that lie in nearly the same plane. There are `pattern_side` / 2 pixels on each
-  /// side of it.
+  /// those around that lie in nearly the same plane; its own if the pixel is crowded. There are
+  /// `pattern_side` / 2 pixels on each side of it.
   Light even_light(int x, int y, const Spot& spot) const;
 
  private:

@@ -120,8 +120,9 @@ TEST(Isosurface, LacksTheSkyThatALongMonteCarloRunLacks) {
       force_instruction_set(target);
       double sky = 0;
       for (int number = 0; number < pattern; ++number) {
-        const Spot spot{{place, no_particle, 0}, normal, {}};
-        sky += static_cast<double>(light_of(light, spot, number, scratch).sky) / pattern;
+        Spot spot{{place, no_particle, 0}, normal, {}};
+        light_spots(light, {&spot, 1}, number, scratch);
+        sky += static_cast<double>(spot.light.sky) / pattern;
       }
       EXPECT_NEAR(sky, expected, tolerance) << target << ", ray " << hit.ray;
     }

@@ -211,6 +211,29 @@ TEST(AmbientOcclusion, Of16SamplesIsNearlyFreeOfNoise) {
   EXPECT_GT(count, 8000);
 }
 
+// A pixel a ball and a half wide shows more than a few balls, which share its rays to the sky.
+TEST(AmbientOcclusion, OfCrowdedPixelsIsThatOfTheirRays) {
+  const Pile pile;
+  constexpr int side = 4, n = 8, columns = side * n;
+  ImagePlane plane{0.25, 0.25, side, side, n};
+  const SurfaceSamples crowded = render(pile.surface, pile.view, plane, sky_alone(16));
+  plane = {0.25, 0.25, columns, columns, 1};
+  const SurfaceSamples sparse = render(pile.surface, pile.view, plane, sky_alone(256));
+  double sum = 0;
+  for (int pixel = 0; pixel < side * side; ++pixel) {
+    double difference = 0;
+    for (int ray = 0; ray < n * n; ++ray) {
+      const int column = pixel % side * n + ray % n, row = pixel / side * n + ray / n;
+      const auto i = static_cast<std::size_t>(row * columns + column);
+      ASSERT_EQ(crowded.depth[i], sparse.depth[i]);
+      if (!std::isinf(crowded.depth[i])) difference += crowded.color[i].r - sparse.color[i].r;
+    }
+    EXPECT_NEAR(difference / (n * n), 0, 0.1) << pixel;
+    sum += difference / (n * n);
+  }
+  EXPECT_NEAR(sum / (side * side), 0, 0.02);
+}
+
 TEST(Shade, TellsTheSameOfAPixelWhateverTheRectAndTheThreads) {
   const tbb::global_control parallelism(tbb::global_control::max_allowed_parallelism, 5);
   Pile pile;
