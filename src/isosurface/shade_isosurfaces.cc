@@ -71,12 +71,12 @@ class TileShader {
     spots_.reset(tile_.width + 2 * margin_);
     for (int y = 0; y < tile_.height + 2 * margin_; ++y) {
       for (int x = 0; x < tile_.width + 2 * margin_; ++x) {
+        const int number = pattern_number(tile_.x + x - margin_, tile_.y + y - margin_);
         for (int i = 0; i < n_ * n_; ++i) {
           const auto hits = hits_of(n_ * x + i % n_, n_ * y + i / n_);
           if (hits.empty() || hits.back().opacity < 1) continue;
-          spots_.add({point_of(hits.back()), Vector3d(hits.back().normal), {}});
+          spots_.add({point_of(hits.back()), Vector3d(hits.back().normal), {}}, rank_of(number, i));
         }
-        const int number = pattern_number(tile_.x + x - margin_, tile_.y + y - margin_);
         motes::light_spots(light_, spots_.end_pixel(), number, directions_);
       }
     }

@@ -65,6 +65,10 @@ std::vector<Vector3f> directions(int samples, std::uint32_t seed, const Directio
 
 }  // namespace
 
+std::uint32_t rank_of(int number, int i) {
+  return hashed(static_cast<std::uint32_t>(number), static_cast<std::uint32_t>(i));
+}
+
 std::vector<Vector3f> cosine_directions(int samples, std::uint32_t seed) {
   return directions(samples, hashed(seed, 2), [](double u, double cosine, double sine) {
     const double across = std::sqrt(u);

@@ -26,6 +26,9 @@ inline int pattern_number(int px, int py) {
   return number;
 }
 
+/// The rank (spots.h) of what ray i of a pixel of that number meets.
+std::uint32_t rank_of(int number, int i);
+
 /// The directions of a pixel of that number, of all that the functions below return.
 inline std::span<const Vector3f> directions_of(std::span<const Vector3f> all, int number) {
   const std::size_t samples = all.size() / (std::size_t{pattern_side} * pattern_side);

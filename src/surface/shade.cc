@@ -56,16 +56,17 @@ class TileShader {
     return {frame_.view.eye, axes.forward + across, hit};
   }
 
-  /// Finds the spots, each where the first of its pixel's rays meets it, and their light.
+  /// Finds the spots and their light.
   void light_spots() {
     spots_.reset(tile_.width + 2 * margin_);
     for (int y = -margin_; y < tile_.height + margin_; ++y) {
       for (int x = -margin_; x < tile_.width + margin_; ++x) {
+        const int number = pattern_number(tile_.x + x, tile_.y + y);
         for (int i = 0; i < n_ * n_; ++i) {
           const Ray ray = ray_of(x, y, i);
-          if (ray.hit.any()) spots_.add({ray.point(), Vector3d(ray.hit.normal), {}});
+          if (ray.hit.any())
+            spots_.add({ray.point(), Vector3d(ray.hit.normal), {}}, rank_of(number, i));
         }
-        const int number = pattern_number(tile_.x + x, tile_.y + y);
         motes::light_spots(frame_, spots_.end_pixel(), number, directions_);
       }
     }

@@ -25,17 +25,29 @@ void Spots::reset(int columns) {
   columns_ = columns;
   spots_.clear();
   begin_.assign(1, 0);
+  ranks_.clear();
 }
 
-void Spots::add(const Spot& spot) {
-  for (std::size_t s = begin_.back(); s < spots_.size(); ++s) {
-    const SurfacePoint& other = spots_[s].point;
-    if (other.particle == spot.point.particle && other.stick == spot.point.stick) return;
+void Spots::add(const Spot& spot, std::uint32_t rank) {
+  for (std::size_t s = 0; s < ranks_.size(); ++s) {
+    Spot& other = spots_[begin_.back() + s];
+    const bool same =
+        other.point.particle == spot.point.particle && other.point.stick == spot.point.stick;
+    if (!same) continue;
+    const int num_rays = other.num_rays + 1;
+    if (rank < ranks_[s]) {
+      other = spot;
+      ranks_[s] = rank;
+    }
+    other.num_rays = num_rays;
+    return;
   }
   spots_.push_back(spot);
+  ranks_.push_back(rank);
 }
 
 std::span<Spot> Spots::end_pixel() {
+  ranks_.clear();
   const std::size_t begin = begin_.back();
   begin_.push_back(spots_.size());
   return std::span(spots_).subspan(begin);
@@ -55,9 +67,10 @@ Light Spots::even_light(int x, int y, const Spot& spot) const {
   for (int dy = -reach; dy <= reach; ++dy) {
     for (int dx = -reach; dx <= reach; ++dx) {
       // The outermost ones count half: then each pixel of the pattern counts the same.
-      const float weight = (std::abs(dx) == reach ? 0.5f : 1) * (std::abs(dy) == reach ? 0.5f : 1);
+      const float half = (std::abs(dx) == reach ? 0.5f : 1) * (std::abs(dy) == reach ? 0.5f : 1);
       for (const Spot& other : of(x + dx, y + dy)) {
         if (&other != &spot && !alike(spot, other)) continue;
+        const float weight = half * static_cast<float>(other.num_rays);
         sum += weight;
         light.sky += weight * other.light.sky;
         for (std::size_t l = 0; l < max_lights; ++l) {

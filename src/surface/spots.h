@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -34,6 +35,7 @@ struct Spot {
   SurfacePoint point;
   Vector3d normal;
   Light light;
+  int num_rays = 1;  ///< of the pixel that meet the ball or stick
 };
 
 /// The spots of a tile's pixels, column by column and row by row.
@@ -41,22 +43,24 @@ class Spots {
  public:
   /// Takes back all spots, and begins with the first pixel of so many columns.
   void reset(int columns);
-  /// Adds a spot to the pixel, unless that has one of the same ball or stick.
-  void add(const Spot& spot);
+  /// Adds what one of the pixel's rays meets. Of the spots of a ball or stick that of the lowest
+  /// rank is kept. With ranks by chance it may be any: the first would be at the edge.
+  void add(const Spot& spot, std::uint32_t rank);
   /// Goes on to the next pixel; returns the spots of the last.
   std::span<Spot> end_pixel();
 
   /// The spots of pixel (x, y).
   std::span<const Spot> of(int x, int y) const;
   /// The light of a spot of pixel (x, y), evened out over the pattern of directions: the mean of
-  /// those around that lie in nearly the same plane; its own if the pixel is crowded. There are
+  /// the rays around that lie in nearly the same plane; its own if the pixel is crowded. There are
   /// `pattern_side` / 2 pixels on each side of it.
   Light even_light(int x, int y, const Spot& spot) const;
 
  private:
   int columns_ = 0;
   std::vector<Spot> spots_;
-  std::vector<std::size_t> begin_;  ///< of each pixel, and of the one that comes next
+  std::vector<std::size_t> begin_;    ///< of each pixel, and of the one that comes next
+  std::vector<std::uint32_t> ranks_;  ///< of the present pixel's spots
 };
 
 }  // namespace motes
