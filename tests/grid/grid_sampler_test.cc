@@ -40,6 +40,28 @@ TEST(GridSampler, ReproducesALinearFieldUpToTheFaces) {
   }
 }
 
+// Of samples that vary along one axis alone; those around them then count with weights of sum 1.
+TEST(GridSampler, GradientsAreCentralDifferencesAtTheSamples) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    Grid grid = grid_of({9, 9, 9}, [](const Point3d&) { return 0; });
+    const std::array<std::size_t, 3> strides{1, 9, 81};
+    const float along[] = {3, -1, 4, 1, -5, 9, 2, -6, 5};
+    for (std::size_t i = 0; i < grid.size(); ++i) grid.values[i] = along[i / strides[a] % 9];
+    for (const Reconstruction reconstruction :
+         {Reconstruction::trilinear, Reconstruction::tricubic_smoothing}) {
+      const GridSampler sampler(grid, reconstruction);
+      for (std::size_t i = 1; i < 8; ++i) {
+        std::array<double, 3> x{3.2, 4.7, 5};
+        x[a] = static_cast<double>(i);
+        const auto sample = sampler.sample(point_at(sampler, x));
+        ASSERT_TRUE(sample);
+        EXPECT_NEAR(dot(sample->gradient, grid.steps[a]), (along[i + 1] - along[i - 1]) / 2, 1e-5);
+      }
+    }
+  }
+}
+
 // A cubic is its own spline but for what the ends do, which dies away by 0.268 a sample.
 TEST(GridSampler, TricubicReproducesCubicsAwayFromTheFaces) {
   const auto cubic = [](const Point3d& q) {
