@@ -42,6 +42,20 @@ TEST(Engines, ThousandsOfThinSamples) {
   EXPECT_LT(comparison.rms(), 5e-4);
 }
 
+TEST(Engines, SeveralLights) {
+  // Thin samples and a whole power, which a single light takes without calls.
+  PlainScene s = plain_scene({{0, 0, 0}, {1, 1, 0}, {-1, 1, 1}}, 10);
+  s.scene.transfer_functions = {ramp(1, 0.3)};
+  s.scene.render.lighting.enabled = true;
+  const LightSource side{Vector3d{-0.5, 0.7, 0.4}, 0.5}, head{{}, 0.3}, below{Vector3d{0, -2, 1}};
+  using Lights = std::vector<LightSource>;
+  for (const Lights& lights :
+       {Lights{}, {side}, {head}, {side, head}, {below, side}, {below, side, head, below}}) {
+    s.scene.render.lighting.lights = lights;
+    check(s, fmt::format("{} lights", lights.size()));
+  }
+}
+
 TEST(Engines, EveryShininessFromTheSide) {
   // Thin samples, the light anywhere but at the eye; shininess by a few multiplications and by
   // logarithms.

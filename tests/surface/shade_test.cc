@@ -366,6 +366,11 @@ TEST(Shade, SoftShadowsAreThePartOfTheLampThatIsSeen) {
   // Beyond a line at half its radius lies this part of a disc.
   const double segment = (std::acos(0.5) - 0.5 * std::sqrt(0.75)) / std::numbers::pi;
   EXPECT_NEAR(lit(edge - 0.5 * shading.light_radius), 1 - segment, 0.01);
+  // The part of the lamp below the horizon gives no light.
+  const TwoBalls apart({0, 0, -50}, 4);
+  const double low = std::numbers::pi / 2 - 0.5 * shading.light_radius;
+  shading.lighting.lights[0].direction = Vector3d{std::sin(low), 0, std::cos(low)};
+  EXPECT_NEAR(apart.middle(shading).r / std::cos(low), 1 - segment, 0.02);
   // Each of several lights has its own shadow.
   const auto towards = [](double angle) { return Vector3d{std::sin(angle), 0, std::cos(angle)}; };
   shading.lighting.lights = {
