@@ -44,7 +44,7 @@ FieldValues find_field_values(const KernelSet& kernels, const GeometrySource& ge
     const std::vector<FieldSample> samples = probe(kernels, points);
     for (std::size_t i = r.begin(); i != r.end(); ++i) {
       const std::size_t f = first[particle_of[i]];
-      const bool has = drawn[i] < geometry.index.size() && by_field(geometry.srgb_of(drawn[i])) &&
+      const bool has = drawn[i] != not_drawn && by_field(geometry.srgb_of(drawn[i])) &&
                        f < kernels.fields.size();
       values.field[i] = has ? static_cast<std::uint8_t>(f) : FieldValues::none;
       values.value[i] =

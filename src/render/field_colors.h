@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "core/aligned.h"
@@ -23,9 +24,12 @@ struct FieldValues {
   std::size_t bytes() const { return field.size() + value.size() * sizeof(float); }
 };
 
+/// The number of a particle that is not among those that are drawn.
+inline constexpr std::uint32_t not_drawn = std::numeric_limits<std::uint32_t>::max();
+
 /// Those of the particles whose colour is ColorBy::field: of several fields that have one, the
 /// first. `particle_of` and `drawn` tell of each kernel, in leaf order, its particle and its number
-/// in `geometry`, if it is drawn.
+/// in `geometry`, or not_drawn.
 FieldValues find_field_values(const KernelSet& kernels, const GeometrySource& geometry,
                               const UninitializedVector<std::uint32_t>& particle_of,
                               const UninitializedVector<std::uint32_t>& drawn);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
-#include <limits>
 #include <optional>
 #include <utility>
 
@@ -14,15 +13,13 @@
 namespace motes {
 namespace {
 
-constexpr std::uint32_t not_drawn = std::numeric_limits<std::uint32_t>::max();
-
 /// For each kernel its number among the drawn particles, once for each of these.
 UninitializedVector<std::uint32_t> find_drawn(
-    const ParticleSet& particles, const GeometrySource& geometry,
-    const UninitializedVector<std::uint32_t>& particle_of) {
-  std::vector<std::uint32_t> number(particles.size(), not_drawn);
-  for (std::size_t k = 0; k < geometry.index.size(); ++k) {
-    number[geometry.index[k]] = static_cast<std::uint32_t>(k);
+    const std::vector<bool>& is_drawn, const UninitializedVector<std::uint32_t>& particle_of) {
+  std::vector<std::uint32_t> number(is_drawn.size(), not_drawn);
+  std::uint32_t count = 0;
+  for (std::size_t i = 0; i < is_drawn.size(); ++i) {
+    if (is_drawn[i]) number[i] = count++;
   }
   UninitializedVector<std::uint32_t> drawn(particle_of.size());
   for (std::size_t i = 0; i < particle_of.size(); ++i) {
@@ -103,12 +100,13 @@ void set_colors(const GeometrySource& geometry, const UninitializedVector<std::u
 }  // namespace
 
 Surface make_surface(const ParticleSet& particles, GeometrySource& geometry,
-                     const std::vector<FieldSource>& sources, const KernelOrder& order,
-                     const KernelSet& kernels, FieldValues& field_values) {
+                     const std::vector<bool>& is_drawn, const std::vector<FieldSource>& sources,
+                     const KernelOrder& order, const KernelSet& kernels,
+                     FieldValues& field_values) {
   Surface surface;
   surface.kernels = &kernels;
   const auto particle_of = particles_in_order(sources, order);
-  const auto drawn = find_drawn(particles, geometry, particle_of);
+  const auto drawn = find_drawn(is_drawn, particle_of);
   set_radii(geometry, drawn, kernels.length_scale, surface);
   set_colors(geometry, drawn, surface.colors);
   field_values = find_field_values(kernels, geometry, particle_of, drawn);
@@ -147,6 +145,20 @@ std::optional<FieldSource> find_drawn_only(const ParticleSet& particles,
   drawn_only.radius = {any ? of_particles->radius[0] : 0.5F * largest};
   drawn_only.weight = {any ? of_particles->weight[0] : 1.0F};
   return drawn_only;
+}
+
+std::vector<bool> pack_index(GeometrySource& geometry, std::size_t num_particles) {
+  std::vector<bool> is_drawn(num_particles);
+  for (const std::uint32_t i : std::exchange(geometry.index, {})) is_drawn[i] = true;
+  return is_drawn;
+}
+
+void unpack_index(const std::vector<bool>& is_drawn, GeometrySource& geometry) {
+  geometry.index.reserve(
+      static_cast<std::size_t>(std::count(is_drawn.begin(), is_drawn.end(), true)));
+  for (std::uint32_t i = 0; i < is_drawn.size(); ++i) {
+    if (is_drawn[i]) geometry.index.push_back(i);
+  }
 }
 
 }  // namespace motes

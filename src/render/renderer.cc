@@ -318,11 +318,15 @@ void Renderer::build(const ParticleSet& particles, const std::vector<FieldSource
   *kernels_ = {};  // its memory is free before the new one needs it
   grids_ = make_grid_fields(fields);
   const auto build_from = [&](const std::vector<FieldSource>& sources) {
+    const bool any_drawn = !geometry.empty();
+    const std::vector<bool> is_drawn = pack_index(geometry, particles.size());
     *kernels_ = build_kernel_set(particles, sources, &order_);
     species_ = species_of_kernels(particles, sources, order_);
     set_units(grids_, *kernels_);
-    if (geometry.empty()) return;
-    surface_ = make_surface(particles, geometry, sources, order_, *kernels_, field_values_);
+    if (!any_drawn) return;
+    surface_ =
+        make_surface(particles, geometry, is_drawn, sources, order_, *kernels_, field_values_);
+    unpack_index(is_drawn, geometry);
   };
   std::optional<FieldSource> drawn_only = find_drawn_only(particles, geometry, fields);
   if (!drawn_only) return build_from(fields);

@@ -66,7 +66,8 @@ class Renderer {
   /// Gathers the fields' kernels and grids, and builds the tree; needs none of the arguments
   /// afterwards. Throws Error as GridSampler does.
   Renderer(const ParticleSet& particles, const std::vector<FieldSource>& fields);
-  /// The same with what is drawn of `geometry`, whose bonds by distance are found through the tree.
+  /// The same with what is drawn of `geometry`, whose bonds by distance are found through the tree
+  /// and which is of no more use if this throws.
   Renderer(const ParticleSet& particles, const std::vector<FieldSource>& fields,
            GeometrySource& geometry);
 
