@@ -7,8 +7,8 @@ namespace motes {
 
 struct LightConstants {
   bool headlight = true;
-  float direction[3] = {0, 0,
-                        -1};  ///< unit vector towards the light, camera axes; unless headlight
+  /// Unless it is a headlight: unit vector towards the light, camera axes.
+  float direction[3] = {0, 0, -1};
   float intensity = 1;
 };
 

@@ -77,7 +77,7 @@ class TileShader {
           if (hits.empty() || hits.back().opacity < 1) continue;
           spots_.add({point_of(hits.back()), Vector3d(hits.back().normal), {}}, rank_of(number, i));
         }
-        motes::light_spots(light_, spots_.end_pixel(), number, directions_);
+        look_for_light(light_, spots_.end_pixel(), number, directions_);
       }
     }
     for (int y = 0; y < tile_.height; ++y) {

@@ -63,6 +63,7 @@ ShadingConstants make_shading(const ResolvedScene& scene, const CameraAxes& axes
   shading.diffuse = static_cast<float>(lighting.diffuse);
   shading.specular = static_cast<float>(lighting.specular);
   shading.shininess = static_cast<float>(lighting.shininess);
+  assert(lighting.lights.size() <= max_lights);
   for (const LightSource& light : lighting.lights) {
     LightConstants& constants = shading.lights.emplace_back();
     constants.intensity = static_cast<float>(light.intensity);

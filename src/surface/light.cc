@@ -87,8 +87,8 @@ bool has_hard_shadows(const SurfaceShading& shading) {
   return has_shadows(shading) && !has_soft_shadows(shading);
 }
 
-void light_spots(const SurfaceFrame& frame, std::span<Spot> spots, int number,
-                 std::vector<Vector3f>& scratch) {
+void look_for_light(const SurfaceFrame& frame, std::span<Spot> spots, int number,
+                    std::vector<Vector3f>& scratch) {
   for (std::size_t s = 0; s < spots.size(); ++s) {
     spots[s].light = light_of(frame, spots[s], {number, s, spots.size()}, scratch);
   }

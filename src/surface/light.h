@@ -14,10 +14,10 @@ namespace motes {
 bool has_spots(const SurfaceShading& shading);
 bool has_hard_shadows(const SurfaceShading& shading);
 
-/// Looks for the light of a pixel's spots, the pixel being of that number of the pattern.
+/// Sets the light of a pixel's spots, the pixel being of that number of the pattern.
 /// `scratch`: for its own use.
-void light_spots(const SurfaceFrame& frame, std::span<Spot> spots, int number,
-                 std::vector<Vector3f>& scratch);
+void look_for_light(const SurfaceFrame& frame, std::span<Spot> spots, int number,
+                    std::vector<Vector3f>& scratch);
 
 /// For each light that has a direction: 1 where it reaches a point, else 0.
 void add_hard_shadows(const SurfaceFrame& frame, const SurfacePoint& point, const Vector3d& normal,

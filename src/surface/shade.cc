@@ -64,10 +64,10 @@ class TileShader {
         const int number = pattern_number(tile_.x + x, tile_.y + y);
         for (int i = 0; i < n_ * n_; ++i) {
           const Ray ray = ray_of(x, y, i);
-          if (ray.hit.any())
-            spots_.add({ray.point(), Vector3d(ray.hit.normal), {}}, rank_of(number, i));
+          if (!ray.hit.any()) continue;
+          spots_.add({ray.point(), Vector3d(ray.hit.normal), {}}, rank_of(number, i));
         }
-        motes::light_spots(frame_, spots_.end_pixel(), number, directions_);
+        look_for_light(frame_, spots_.end_pixel(), number, directions_);
       }
     }
   }

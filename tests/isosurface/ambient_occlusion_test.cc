@@ -121,7 +121,7 @@ TEST(Isosurface, LacksTheSkyThatALongMonteCarloRunLacks) {
       double sky = 0;
       for (int number = 0; number < pattern; ++number) {
         Spot spot{{place, no_particle, 0}, normal, {}};
-        light_spots(light, {&spot, 1}, number, scratch);
+        look_for_light(light, {&spot, 1}, number, scratch);
         sky += static_cast<double>(spot.light.sky) / pattern;
       }
       EXPECT_NEAR(sky, expected, tolerance) << target << ", ray " << hit.ray;
