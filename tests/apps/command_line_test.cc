@@ -260,7 +260,7 @@ TEST_F(CommandLine, LightsAddUp) {
   const std::string render = "render p.xyz --size 32x32 --save-scene s.json ";
   const auto with = [&](const std::string& lights) {
     succeed(render + "-o a.npy " + lights);
-    const std::vector<float> line = pixels("a.npy");
+    std::vector<float> line = pixels("a.npy");
     succeed("render s.json -o b.npy");
     EXPECT_EQ(pixels("b.npy"), line) << lights;
     return line;
