@@ -71,7 +71,7 @@ struct IsosurfaceHit {
   std::uint32_t level = 0;  ///< IsosurfaceLevel::number
   float opacity = 1;
   double depth = 0;  ///< along the view
-  Normal3f normal;   ///< unit, world axes, towards where the ray comes from
+  Normal3f normal;   ///< unit, world axes, to the side of the surface that the ray comes from
   Color color;       ///< linear, unlit
 };
 

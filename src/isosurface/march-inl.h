@@ -167,11 +167,12 @@ class SlabMarch {
       low = hn::IfThenElse(as_low, z, low);
       high = hn::IfThenElse(as_low, high, z);
     }
-    return finish(level, k, hn::Mul(hn::Set(d, 0.5f), hn::Add(low, high)), lanes);
+    return finish(level, k, hn::Mul(hn::Set(d, 0.5f), hn::Add(low, high)), inside, lanes);
   }
 
   /// Adds the crossings of lanes at depths z to the hits, but for those that are clipped away.
-  unsigned finish(const IsosurfaceLevel& level, int k, Lanes z, unsigned lanes) {
+  /// Lanes of `inside` come from above the level.
+  unsigned finish(const IsosurfaceLevel& level, int k, Lanes z, unsigned inside, unsigned lanes) {
     const LaneTag d;
     const GradientAndColor at = along_.gradient_and_color(level, k, z);
     alignas(64) float depths[max_lanes], gradients[3][max_lanes], colors[3][max_lanes],
@@ -187,7 +188,8 @@ class SlabMarch {
       hit.depth = along_.slab().reference_depth + static_cast<double>(depths[l]);
       if (is_clipped(l, hit.depth)) continue;
       kept |= 1u << l;
-      hit.normal = normal_of(l, {gradients[0][l], gradients[1][l], gradients[2][l]});
+      const Vector3d gradient{gradients[0][l], gradients[1][l], gradients[2][l]};
+      hit.normal = normal_of(l, (inside >> l & 1) != 0 ? gradient : -gradient);
       const float weight = weights[l];
       if (level.colors.size() > 1 && weight > 0) {
         hit.color = {colors[0][l] / weight, colors[1][l] / weight, colors[2][l] / weight};
@@ -210,12 +212,14 @@ class SlabMarch {
     return motes::is_clipped(frame_, p);
   }
 
-  /// From a gradient in camera axes; against the ray where there is none.
-  Normal3f normal_of(std::size_t lane, const Vector3d& gradient) const {
+  /// Along a vector in camera axes that points to the side from which the ray comes; against the
+  /// ray where it is 0. (Which side that is the crossing tells: a grid's gradient is not quite at
+  /// right angles to the surface, and seen from the side its angle to the ray may be of either
+  /// sign.)
+  Normal3f normal_of(std::size_t lane, const Vector3d& to_side) const {
     const Vector3d ray{packet_->rays.direction_x[lane], packet_->rays.direction_y[lane], 1};
-    const double square = dot(gradient, gradient);
-    Vector3d normal = square > 0 ? gradient / std::sqrt(square) : -normalize(ray);
-    if (dot(normal, ray) > 0) normal = -normal;
+    const double square = dot(to_side, to_side);
+    const Vector3d normal = square > 0 ? to_side / std::sqrt(square) : -normalize(ray);
     const Vector3d world = to_world(normal.x, normal.y, normal.z);
     return {static_cast<float>(world.x), static_cast<float>(world.y), static_cast<float>(world.z)};
   }

@@ -1,6 +1,7 @@
 #include "isosurface/shade_isosurfaces.h"
 
 #include <algorithm>
+#include <limits>
 #include <span>
 
 #include "surface/directions.h"
@@ -66,7 +67,7 @@ class TileShader {
     return {ray.origin + hit.depth * ray.direction, no_particle, hit.level};
   }
 
-  /// A spot for each opaque level that a pixel shows.
+  /// A spot for each piece of an opaque level that a pixel shows.
   void light_spots() {
     spots_.reset(tile_.width + 2 * margin_);
     for (int y = 0; y < tile_.height + 2 * margin_; ++y) {
@@ -97,8 +98,13 @@ class TileShader {
       const auto pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(tile_.width) +
                          static_cast<std::size_t>(x);
       const auto spots = spots_.of(x + margin_, y + margin_);
+      const Point3d place = point_of(hit).place;
+      double nearest = std::numeric_limits<double>::infinity();
       for (std::size_t s = 0; s < spots.size(); ++s) {
-        if (spots[s].point.stick == hit.level) light = lights_[lights_begin_[pixel] + s];
+        const double distance = length(spots[s].point.place - place);
+        if (spots[s].point.stick != hit.level || !(distance < nearest)) continue;
+        nearest = distance;
+        light = lights_[lights_begin_[pixel] + s];
       }
     }
     const Vector3d normal(hit.normal);

@@ -19,6 +19,13 @@ bool alike(const Spot& a, const Spot& b) {
   return height <= most_slope * length(between);
 }
 
+/// Whether two spots of a pixel are of one ball, stick or piece of an isosurface: of its level
+/// there may be others, one behind the other.
+bool of_one(const Spot& a, const Spot& b) {
+  if (a.point.particle != b.point.particle || a.point.stick != b.point.stick) return false;
+  return a.point.particle != no_particle || alike(a, b);
+}
+
 }  // namespace
 
 void Spots::reset(int columns) {
@@ -31,9 +38,7 @@ void Spots::reset(int columns) {
 void Spots::add(const Spot& spot, std::uint32_t rank) {
   for (std::size_t s = 0; s < ranks_.size(); ++s) {
     Spot& other = spots_[begin_.back() + s];
-    const bool same =
-        other.point.particle == spot.point.particle && other.point.stick == spot.point.stick;
-    if (!same) continue;
+    if (!of_one(other, spot)) continue;
     const int num_rays = other.num_rays + 1;
     if (rank < ranks_[s]) {
       other = spot;

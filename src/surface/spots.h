@@ -35,7 +35,7 @@ struct Spot {
   SurfacePoint point;
   Vector3d normal;
   Light light;
-  int num_rays = 1;  ///< of the pixel that meet the ball or stick
+  int num_rays = 1;  ///< of the pixel that meet the same
 };
 
 /// The spots of a tile's pixels, column by column and row by row.
@@ -43,8 +43,9 @@ class Spots {
  public:
   /// Takes back all spots, and begins with the first pixel of so many columns.
   void reset(int columns);
-  /// Adds what one of the pixel's rays meets. Of the spots of a ball or stick that of the lowest
-  /// rank is kept. With ranks by chance it may be any: the first would be at the edge.
+  /// Adds what one of the pixel's rays meets. Of the spots of a ball, a stick or a piece of an
+  /// isosurface (those have no particle, and their level as stick) that of the lowest rank is kept.
+  /// With ranks by chance it may be any: the first would be at the edge.
   void add(const Spot& spot, std::uint32_t rank);
   /// Goes on to the next pixel; returns the spots of the last.
   std::span<Spot> end_pixel();

@@ -28,6 +28,23 @@ TEST(Spots, KeepTheLowestRankOfEachBallAndCountItsRays) {
   EXPECT_EQ(spots.end_pixel()[0].num_rays, 1);
 }
 
+TEST(Spots, TellPiecesOfAnIsosurfaceApart) {
+  constexpr std::uint32_t level = 0;
+  const auto at = [](double z) {
+    return Spot{{{0.1 * z, 0, z}, no_particle, level}, {1, 0, 0}, {}};
+  };
+  Spots spots;
+  spots.reset(1);
+  // A step of 100 along the normal is no smooth piece of surface; one of 0.1 is.
+  spots.add(at(0), 3);
+  spots.add(at(1), 2);
+  spots.add({{{100, 0, 0}, no_particle, level}, {1, 0, 0}, {}}, 1);
+  const auto kept = spots.end_pixel();
+  ASSERT_EQ(kept.size(), 2u);
+  EXPECT_EQ(kept[0].num_rays, 2);
+  EXPECT_EQ(kept[1].num_rays, 1);
+}
+
 /// A pattern of pixels that show a ball: those of three rays where it is bright, those of one where
 /// it is dark. The one in the middle shows `extra` balls more.
 Spots pattern(int extra) {
