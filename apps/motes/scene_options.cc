@@ -78,6 +78,8 @@ constexpr NumberRange any_number{no_limit, -no_limit, true, "a number"};
 constexpr NumberRange positive{0, -no_limit, true, "a number greater than 0"};
 constexpr NumberRange opacity{0, 1, true, "a number greater than 0 and not more than 1"};
 constexpr NumberRange ray_count{-1, 4096, true, "a whole number from 0 to 4096"};
+constexpr double below_zero = -std::numeric_limits<double>::denorm_min();
+constexpr NumberRange light_angle{below_zero, 90, true, "an angle from 0 to 90 degrees"};
 constexpr NumberRange angle{0, 180, false, "an angle greater than 0 and less than 180 degrees"};
 
 /// `range` outlives the command.
@@ -151,10 +153,11 @@ SceneChanges::Change read_lights(const std::vector<std::string>& texts) {
   for (const std::string& text : texts) {
     const auto light = light_in(text);
     if (!light) {
-      bad_value("--light",
-                "a direction such as 1,2,1.5 or headlight, with an intensity such as in "
-                "headlight,0.4 or without",
-                text);
+      bad_value(
+          "--light",
+          "a direction such as 1,2,1.5 or headlight, and perhaps an intensity of 0 or more as "
+          "in headlight,0.4",
+          text);
     }
     if (light->direction && !(length(*light->direction) > 0)) {
       throw Error("--light: a direction must not be zero");
@@ -165,7 +168,10 @@ SceneChanges::Change read_lights(const std::vector<std::string>& texts) {
     throw Error(
         fmt::format("--light: expected at most {} lights, found {}", max_lights, lights.size()));
   }
-  return [lights](Scene& scene) { scene.render.lighting.lights = lights; };
+  return [lights](Scene& scene) {
+    scene.render.lighting.enabled = true;
+    scene.render.lighting.lights = lights;
+  };
 }
 
 /// Calls `change` for every field; a scene without any gets the one that it stands for.
@@ -357,8 +363,10 @@ void add_lighting_options(CLI::App& command, SceneChanges& changes) {
              "the light's direction, towards it, for shadows (default: from the camera, none)",
              [](Scene& s, const Vector3d& v) {
                if (!(length(v) > 0)) throw Error("--light-direction: must not be zero");
+               s.render.lighting.enabled = true;
                s.render.lighting.lights = {{v, 1}};
              });
+  command.get_option("--light-direction")->excludes("--no-lighting");
   command
       .add_option_function<std::vector<std::string>>(
           "--light",
@@ -368,7 +376,11 @@ void add_lighting_options(CLI::App& command, SceneChanges& changes) {
           "a light: towards it, or headlight, and its intensity (default: 1); may be given again")
       ->type_name("X,Y,Z[,INTENSITY]")
       ->allow_extra_args(false)
-      ->excludes("--light-direction");
+      ->excludes("--light-direction")
+      ->excludes("--no-lighting");
+  add_number(command, changes, "--light-angle", "DEGREES",
+             "how large lights are seen (default: 3); 0: hard shadows", light_angle,
+             [](Scene& s, double v) { s.render.surface.light_angle = v; });
 }
 
 }  // namespace

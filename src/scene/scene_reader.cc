@@ -305,6 +305,9 @@ std::vector<LightSource> read_lights(const Value& value) {
   }
   std::vector<LightSource> lights;
   for (const Value& item : items) {
+    if (!item.raw().is_object()) {
+      item.expected(R"(an object such as {"direction": [1, 2, 1.5]} or, at the camera, {})");
+    }
     item.check_keys({"direction", "intensity"});
     LightSource& light = lights.emplace_back();
     read_direction(item, light);

@@ -276,12 +276,22 @@ TEST_F(CommandLine, LightsAddUp) {
     brightest = std::max<double>(brightest, both[i] - side[i]);
   }
   EXPECT_GT(brightest, 0.05);
+  EXPECT_EQ(with("--light-direction 3,1,1 --light-angle 0"), side);  // (a volume has no shadows)
   const std::string expected = "--light: expected a direction such as 1,2,1.5 or headlight";
   for (const std::string bad : {"1,2", "1,2,3,4,5", "headlights", "headlight,x", "1,2,3,-1",
                                 "1,2,3,", "headlight,", "headlight,inf", "''"}) {
     EXPECT_THAT(failure("render p.xyz -o a.npy --light " + bad, 2), HasSubstr(expected)) << bad;
   }
   EXPECT_THAT(failure("render p.xyz -o a.npy --light 0,0,0", 1), HasSubstr("zero"));
+  EXPECT_THAT(failure("render p.xyz -o a.npy --light 1,2,3 --no-lighting", 2),
+              HasSubstr("excludes"));
+  EXPECT_THAT(failure("render p.xyz -o a.npy --light-angle 91", 2), HasSubstr("0 to 90"));
+  // Lights are asked for: a scene without has them then.
+  workspace_.write("dark.json",
+                   R"({"version": 1, "data": {"path": "p.xyz"}, "render": {"size": [32, 32],
+                      "lighting": {"enabled": false}}})");
+  succeed("render dark.json -o dark.npy --light 3,1,1");
+  EXPECT_EQ(pixels("dark.npy"), side);
   std::string nine;
   for (int i = 0; i < 9; ++i) nine += " --light headlight";
   EXPECT_THAT(failure("render p.xyz -o a.npy" + nine, 1), HasSubstr("at most 8 lights, found 9"));

@@ -282,6 +282,8 @@ INSTANTIATE_TEST_SUITE_P(
                 "render.lighting.direction: a direction must not be zero"},
         Refusal{R"("render": {"lighting": {"lights": {}}})",
                 "render.lighting.lights: expected an array of lights"},
+        Refusal{R"("render": {"lighting": {"lights": ["headlight"]}})",
+                "render.lighting.lights[0]: expected an object such as {\"direction\""},
         Refusal{R"("render": {"lighting": {"lights": [{}, {"direction": [0, 0, 0]}]}})",
                 "render.lighting.lights[1].direction: a direction must not be zero"},
         Refusal{R"("render": {"lighting": {"lights": [{"intensity": -1}]}})",
