@@ -50,7 +50,11 @@ export interface SavedScene {
     transfer_function: { points: { value: number; color: string; extinction: number }[] };
   }[];
   geometry?: { type: string }[];
-  render: { size: number[]; background: string };
+  render: {
+    size: number[];
+    background: string;
+    lighting: { lights?: { direction?: number[]; intensity?: number }[] };
+  };
 }
 
 /** Has another page answered for the program's, under the same nonce. */
