@@ -142,7 +142,7 @@ std::optional<LightSource> light_in(std::string_view text) {
   }
   if (rest.empty()) return light;
   const auto intensity = number_in(rest);
-  if (!intensity || !(*intensity >= 0) || std::isinf(*intensity)) return std::nullopt;
+  if (!intensity || !(*intensity >= 0 && *intensity <= max_intensity)) return std::nullopt;
   light.intensity = *intensity;
   return light;
 }
@@ -153,11 +153,11 @@ SceneChanges::Change read_lights(const std::vector<std::string>& texts) {
   for (const std::string& text : texts) {
     const auto light = light_in(text);
     if (!light) {
-      bad_value(
-          "--light",
-          "a direction such as 1,2,1.5 or headlight, and perhaps an intensity of 0 or more as "
-          "in headlight,0.4",
-          text);
+      bad_value("--light",
+                "a direction such as 1,2,1.5 or headlight, and perhaps an intensity from 0 to a "
+                "million as "
+                "in headlight,0.4",
+                text);
     }
     if (light->direction && !(length(*light->direction) > 0)) {
       throw Error("--light: a direction must not be zero");
@@ -494,7 +494,7 @@ void add_picture_options(CLI::App& command, SceneChanges& changes) {
              fmt::format("what is drawn: {}", fmt::join(style_names(), ", ")), read_style);
   add_number(
       command, changes, "--ambient-occlusion", "N",
-      "rays a pixel for the ambient occlusion of balls and sticks (default: 16)", ray_count,
+      "rays a pixel for the ambient occlusion of surfaces (default: 16)", ray_count,
       [](Scene& scene, double v) { scene.render.surface.occlusion_samples = static_cast<int>(v); });
   add_option(command, changes, "--engine", "NAME",
              "sweep, coherent, direct or cells (default: sweep)", read_engine);

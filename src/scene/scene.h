@@ -91,11 +91,12 @@ struct Field {
 /// A light that is infinitely far away.
 struct LightSource {
   std::optional<Vector3d> direction;  ///< towards the light, world axes; nullopt: headlight
-  double intensity = 1;
+  double intensity = 1;               ///< from 0 to max_intensity
   bool operator==(const LightSource&) const = default;
 };
 
 inline constexpr std::size_t max_lights = 8;
+inline constexpr double max_intensity = 1e6;
 
 struct Lighting {
   bool enabled = true;

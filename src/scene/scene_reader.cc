@@ -311,7 +311,10 @@ std::vector<LightSource> read_lights(const Value& value) {
     item.check_keys({"direction", "intensity"});
     LightSource& light = lights.emplace_back();
     read_direction(item, light);
-    item.with("intensity", [&](const Value& v) { light.intensity = v.number_from_zero(); });
+    item.with("intensity", [&](const Value& v) {
+      light.intensity = v.number_from_zero();
+      if (light.intensity > max_intensity) v.expected("a number from 0 to a million");
+    });
   }
   return lights;
 }

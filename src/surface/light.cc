@@ -1,6 +1,7 @@
 #include "surface/light.h"
 
 #include <algorithm>
+#include <limits>
 #include <span>
 
 #include "surface/directions.h"

@@ -14,6 +14,13 @@ Color scaled(const Color& c, double s, double plus) {
   return {channel(c.r), channel(c.g), channel(c.b)};
 }
 
+/// The cosine of a normal's angle with the halfway vector; 0 where there is none, the light being
+/// straight behind. (A grid's surface that is seen from the side may face it all the same.)
+double mirrored_by(const Vector3d& halfway, const Vector3d& normal) {
+  const double square = dot(halfway, halfway);
+  return square > 0 ? std::max(dot(normal, halfway) / std::sqrt(square), 0.0) : 0;
+}
+
 }  // namespace
 
 Vector3d unit(const Vector3d& v) { return v / std::sqrt(dot(v, v)); }
@@ -29,8 +36,7 @@ Color phong(const Lighting& lighting, const Color& base, const Vector3d& normal,
     const double lit = intensity * (direction ? static_cast<double>(light.lamps[l]) : sky);
     const double cosine = dot(normal, direction.value_or(view));
     if (!(cosine > 0) || lit == 0) continue;
-    const double mirrored =
-        direction ? std::max(dot(normal, unit(*direction + view)), 0.0) : cosine;
+    const double mirrored = direction ? mirrored_by(*direction + view, normal) : cosine;
     const float gloss =
         std::pow(static_cast<float>(mirrored), static_cast<float>(lighting.shininess));
     body += lit * lighting.diffuse * cosine;

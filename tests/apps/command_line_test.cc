@@ -279,7 +279,7 @@ TEST_F(CommandLine, LightsAddUp) {
   EXPECT_EQ(with("--light-direction 3,1,1 --light-angle 0"), side);  // (a volume has no shadows)
   const std::string expected = "--light: expected a direction such as 1,2,1.5 or headlight";
   for (const std::string bad : {"1,2", "1,2,3,4,5", "headlights", "headlight,x", "1,2,3,-1",
-                                "1,2,3,", "headlight,", "headlight,inf", "''"}) {
+                                "1,2,3,", "headlight,", "headlight,inf", "headlight,1e39", "''"}) {
     EXPECT_THAT(failure("render p.xyz -o a.npy --light " + bad, 2), HasSubstr(expected)) << bad;
   }
   EXPECT_THAT(failure("render p.xyz -o a.npy --light 0,0,0", 1), HasSubstr("zero"));

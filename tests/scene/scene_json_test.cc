@@ -288,6 +288,8 @@ INSTANTIATE_TEST_SUITE_P(
                 "render.lighting.lights[1].direction: a direction must not be zero"},
         Refusal{R"("render": {"lighting": {"lights": [{"intensity": -1}]}})",
                 "render.lighting.lights[0].intensity: expected a number of 0 or more"},
+        Refusal{R"("render": {"lighting": {"lights": [{"intensity": 1e39}]}})",
+                "render.lighting.lights[0].intensity: expected a number from 0 to a million"},
         Refusal{R"("render": {"lighting": {"lights": [{"color": "#ffffff"}]}})",
                 "render.lighting.lights[0]"},
         Refusal{R"("render": {"lighting": {"lights": [{},{},{},{},{},{},{},{},{}]}})",

@@ -1,6 +1,7 @@
 // Light on balls and sticks: ambient occlusion against closed forms and long Monte Carlo runs,
 // shadows and colours against the formulas of docs/surface.md.
 #include "surface/shade.h"
+#include "surface/phong.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -344,6 +345,13 @@ TEST(Shade, KeepsToItsFormulasForHardShadows) {
   }
   EXPECT_GT(lit, 2000);
   EXPECT_GT(dark, 500);
+}
+
+// A grid's surface that is seen from the side may face a light straight behind it.
+TEST(Shade, ALightStraightBehindHasNoHighlight) {
+  const Lighting lighting{.ambient = 0.25, .diffuse = 0.5, .lights = {{Vector3d{0, 0, -1}}}};
+  const Color color = phong(lighting, {1, 1, 1}, {0.6, 0, -0.8}, {0, 0, 1}, {});
+  EXPECT_FLOAT_EQ(color.r, 0.25F + 0.5F * 0.8F);
 }
 
 // Seen from the middle of the first ball, the second takes up all directions within asin(4/5) of
