@@ -63,6 +63,21 @@ void add_option(CLI::App& command, SceneChanges& changes, const std::string& nam
       ->type_name(placeholder);
 }
 
+/// Adds an option that may be given again; `read` makes a change of the scene out of all its texts.
+CLI::Option* add_repeatable(CLI::App& command, SceneChanges& changes, const std::string& name,
+                            const std::string& placeholder, const std::string& description,
+                            SceneChanges::Change (*read)(const std::vector<std::string>&)) {
+  return command
+      .add_option_function<std::vector<std::string>>(
+          name,
+          [&changes, name, read](const std::vector<std::string>& texts) {
+            changes.add(name, read(texts));
+          },
+          description + "; may be given again")
+      ->type_name(placeholder)
+      ->allow_extra_args(false);
+}
+
 struct NumberRange {
   double above;
   double up_to = std::numeric_limits<double>::infinity();
@@ -124,24 +139,20 @@ SceneChanges::Change read_clip_planes(const std::vector<std::string>& texts) {
 
 /// X,Y,Z or headlight, each with ,INTENSITY or without; nothing where text is none of these.
 std::optional<LightSource> light_in(std::string_view text) {
-  const bool directional = !text.starts_with("headlight");
+  const bool headlight = text.starts_with("headlight");
+  const bool has_intensity = std::ranges::count(text, ',') == (headlight ? 1 : 3);
+  const std::size_t end = has_intensity ? text.rfind(',') : text.size();
+  const std::string_view place = text.substr(0, end);
   LightSource light;
-  std::string_view rest = text;
-  for (int commas = directional ? 3 : 1; commas > 0; --commas) {
-    const auto comma = rest.find(',');
-    rest.remove_prefix(comma == std::string_view::npos ? rest.size() : comma + 1);
-  }
-  const std::string_view place =
-      rest.empty() ? text : text.substr(0, text.size() - rest.size() - 1);
-  if (directional) {
+  if (headlight) {
+    if (place != "headlight") return std::nullopt;
+  } else {
     const auto direction = triple_in(place);
     if (!direction) return std::nullopt;
     light.direction = {(*direction)[0], (*direction)[1], (*direction)[2]};
-  } else if (place != "headlight") {
-    return std::nullopt;
   }
-  if (rest.empty()) return light;
-  const auto intensity = number_in(rest);
+  if (!has_intensity) return light;
+  const auto intensity = number_in(text.substr(end + 1));
   if (!intensity || !(*intensity >= 0 && *intensity <= max_intensity)) return std::nullopt;
   light.intensity = *intensity;
   return light;
@@ -367,15 +378,8 @@ void add_lighting_options(CLI::App& command, SceneChanges& changes) {
                s.render.lighting.lights = {{v, 1}};
              });
   command.get_option("--light-direction")->excludes("--no-lighting");
-  command
-      .add_option_function<std::vector<std::string>>(
-          "--light",
-          [&changes](const std::vector<std::string>& texts) {
-            changes.add("--light", read_lights(texts));
-          },
-          "a light: towards it, or headlight, and its intensity (default: 1); may be given again")
-      ->type_name("X,Y,Z[,INTENSITY]")
-      ->allow_extra_args(false)
+  add_repeatable(command, changes, "--light", "X,Y,Z[,INTENSITY]",
+                 "a light: towards it, or headlight, and its intensity (default: 1)", read_lights)
       ->excludes("--light-direction")
       ->excludes("--no-lighting");
   add_number(command, changes, "--light-angle", "DEGREES",
@@ -481,15 +485,8 @@ void add_picture_options(CLI::App& command, SceneChanges& changes) {
   add_number(command, changes, "--termination-opacity", "A",
              "opacity at which a ray stops (default: 0.97)", opacity,
              [](Scene& scene, double v) { scene.render.termination_opacity = v; });
-  command
-      .add_option_function<std::vector<std::string>>(
-          "--clip-plane",
-          [&changes](const std::vector<std::string>& texts) {
-            changes.add("--clip-plane", read_clip_planes(texts));
-          },
-          "cuts away what lies farther than D along the normal; may be given again")
-      ->type_name("NX,NY,NZ,D")
-      ->allow_extra_args(false);
+  add_repeatable(command, changes, "--clip-plane", "NX,NY,NZ,D",
+                 "cuts away what lies farther than D along the normal", read_clip_planes);
   add_option(command, changes, "--style", "NAME",
              fmt::format("what is drawn: {}", fmt::join(style_names(), ", ")), read_style);
   add_number(

@@ -44,6 +44,18 @@ class CheckedJson {
   /// Not empty. `what` says in the message what is expected.
   std::string text(std::string_view what) const;
   std::vector<CheckedJson> array(std::string_view what) const;
+  /// The same of at most `most` items of a kind, such as "lights"; `read` makes a T of each.
+  template <class T>
+  std::vector<T> few(std::string_view what, std::size_t most, T (*read)(const CheckedJson&)) const {
+    const auto items = array("an array of " + std::string(what));
+    if (items.size() > most) {
+      expected("an array of at most " + std::to_string(most) + " " + std::string(what));
+    }
+    std::vector<T> out;
+    out.reserve(items.size());
+    for (const CheckedJson& item : items) out.push_back(read(item));
+    return out;
+  }
   std::vector<CheckedJson> array_of(std::size_t size, std::string_view what) const;
   Vector3d vector() const;
   /// "black", "white", "#rrggbb" or three linear numbers of 0 or more.

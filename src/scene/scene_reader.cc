@@ -12,6 +12,7 @@
 #include "scene/checked_json.h"
 #include "scene/geometry_json.h"
 #include "scene/isosurface_json.h"
+#include "scene/lighting_json.h"
 #include "scene/scene.h"
 #include "scene/style.h"
 
@@ -290,70 +291,14 @@ void read_camera(const Value& value, Scene& scene) {
   }
 }
 
-/// Where a light is, if the file says so.
-void read_direction(const Value& value, LightSource& light) {
-  value.with("direction", [&](const Value& v) {
-    light.direction = v.vector();
-    if (!(length(*light.direction) > 0)) v.fail("a direction must not be zero");
-  });
-}
-
-std::vector<LightSource> read_lights(const Value& value) {
-  const auto items = value.array("an array of lights");
-  if (items.size() > max_lights) {
-    value.expected(fmt::format("an array of at most {} lights", max_lights));
-  }
-  std::vector<LightSource> lights;
-  for (const Value& item : items) {
-    if (!item.raw().is_object()) {
-      item.expected(R"(an object such as {"direction": [1, 2, 1.5]} or, at the camera, {})");
-    }
-    item.check_keys({"direction", "intensity"});
-    LightSource& light = lights.emplace_back();
-    read_direction(item, light);
-    item.with("intensity", [&](const Value& v) {
-      light.intensity = v.number_from_zero();
-      if (light.intensity > max_intensity) v.expected("a number from 0 to a million");
-    });
-  }
-  return lights;
-}
-
-Lighting read_lighting(const Value& value) {
-  if (value.raw().is_boolean()) {
-    value.expected(fmt::format("an object such as {{\"enabled\": {}}}", value.boolean()));
-  }
-  Lighting lighting;
-  value.check_keys(
-      {"enabled", "ambient", "diffuse", "specular", "shininess", "direction", "lights"});
-  value.with("enabled", [&](const Value& v) { lighting.enabled = v.boolean(); });
-  value.with("ambient", [&](const Value& v) { lighting.ambient = v.number_from_zero(); });
-  value.with("diffuse", [&](const Value& v) { lighting.diffuse = v.number_from_zero(); });
-  value.with("specular", [&](const Value& v) { lighting.specular = v.number_from_zero(); });
-  value.with("shininess", [&](const Value& v) { lighting.shininess = v.number_from_zero(); });
-  read_direction(value, lighting.lights[0]);
-  value.with("lights", [&](const Value& v) {
-    if (lighting.lights[0].direction) value.fail("expected either direction or lights, found both");
-    lighting.lights = read_lights(v);
-  });
-  return lighting;
-}
-
-std::vector<ClipPlane> read_clip_planes(const Value& value) {
-  const auto items = value.array("an array of planes");
-  if (items.size() > max_clip_planes) {
-    value.expected(fmt::format("an array of at most {} planes", max_clip_planes));
-  }
-  std::vector<ClipPlane> planes;
-  for (const Value& item : items) {
-    item.check_keys({"normal", "distance"});
-    ClipPlane& plane = planes.emplace_back();
-    const Value normal = item.at("normal");
-    plane.normal = normal.vector();
-    if (!(length(plane.normal) > 0)) normal.fail("a direction must not be zero");
-    item.with("distance", [&](const Value& v) { plane.distance = v.number(); });
-  }
-  return planes;
+ClipPlane read_clip_plane(const Value& value) {
+  value.check_keys({"normal", "distance"});
+  ClipPlane plane;
+  const Value normal = value.at("normal");
+  plane.normal = normal.vector();
+  if (!(length(plane.normal) > 0)) normal.fail("a direction must not be zero");
+  value.with("distance", [&](const Value& v) { plane.distance = v.number(); });
+  return plane;
 }
 
 void read_render(const Value& value, RenderSettings& render) {
@@ -373,7 +318,9 @@ void read_render(const Value& value, RenderSettings& render) {
   });
   value.with("lighting", [&](const Value& v) { render.lighting = read_lighting(v); });
   value.with("surface", [&](const Value& v) { render.surface = read_surface_settings(v); });
-  value.with("clip_planes", [&](const Value& v) { render.clip_planes = read_clip_planes(v); });
+  value.with("clip_planes", [&](const Value& v) {
+    render.clip_planes = v.few<ClipPlane>("planes", max_clip_planes, read_clip_plane);
+  });
   value.with("background", [&](const Value& v) {
     const Color color = render.background = v.color();
     if (std::max({color.r, color.g, color.b}) > 1) {

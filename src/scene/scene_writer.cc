@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "scene/geometry_json.h"
 #include "scene/isosurface_json.h"
+#include "scene/lighting_json.h"
 #include "scene/scene.h"
 
 namespace motes {
@@ -86,29 +87,6 @@ json to_json(const Field& field, const std::filesystem::path& directory) {
   for (const Isosurface& isosurface : field.isosurfaces) {
     out["isosurfaces"].push_back(to_json(isosurface));
   }
-  return out;
-}
-
-json to_json(const LightSource& light) {
-  json out = json::object();
-  if (const auto& d = light.direction) out["direction"] = vector_to_json(d->x, d->y, d->z);
-  if (light.intensity != 1) out["intensity"] = light.intensity;
-  return out;
-}
-
-json to_json(const Lighting& lighting) {
-  json out{{"enabled", lighting.enabled},
-           {"ambient", lighting.ambient},
-           {"diffuse", lighting.diffuse},
-           {"specular", lighting.specular},
-           {"shininess", lighting.shininess}};
-  const auto& lights = lighting.lights;
-  if (lights.size() == 1 && lights[0].intensity == 1) {
-    out.update(to_json(lights[0]));
-    return out;
-  }
-  out["lights"] = json::array();
-  for (const LightSource& light : lights) out["lights"].push_back(to_json(light));
   return out;
 }
 

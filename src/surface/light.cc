@@ -31,8 +31,8 @@ int count_free(const SurfaceFrame& frame, SurfacePoint from, const Vector3d& nor
   return num_unoccluded(*frame.surface, from, directions, length);
 }
 
-/// A spot among those of its pixel, which is of that number of the pattern.
-struct Place {
+/// Which of its pixel's rays a spot has; the pixel is of that number of the pattern.
+struct Share {
   int number;
   std::size_t spot, num_spots;
 
@@ -46,7 +46,7 @@ struct Place {
   }
 };
 
-Light light_of(const SurfaceFrame& frame, const Spot& spot, const Place& place,
+Light light_of(const SurfaceFrame& frame, const Spot& spot, const Share& share,
                std::vector<Vector3f>& scratch) {
   const SurfaceShading& shading = frame.shading;
   const auto free_part = [&](std::size_t count, double length, double prune_length) {
@@ -56,7 +56,7 @@ Light light_of(const SurfaceFrame& frame, const Spot& spot, const Place& place,
   Light light;
   if (shading.occlusion_samples > 0) {
     const Across sides = across(spot.normal);
-    const std::span<const Vector3f> directions = place.of(frame.sky);
+    const std::span<const Vector3f> directions = share.of(frame.sky);
     scratch.clear();
     for (const Vector3f& direction : directions) {
       const Vector3d d(direction);
@@ -68,7 +68,7 @@ Light light_of(const SurfaceFrame& frame, const Spot& spot, const Place& place,
   if (!has_soft_shadows(shading)) return light;
   for (std::size_t l = 0; l < frame.lamps.size(); ++l) {
     if (!casts_shadows(shading.lighting.lights[l])) continue;
-    const std::span<const Vector3f> directions = place.of(frame.lamps[l]);
+    const std::span<const Vector3f> directions = share.of(frame.lamps[l]);
     scratch.clear();
     for (const Vector3f& direction : directions) {
       if (dot(Vector3d(direction), spot.normal) > 0) scratch.push_back(direction);

@@ -1,4 +1,5 @@
-// Where the pixels of a tile look for light: once for each ball and stick that they show.
+// Where the pixels of a tile look for light: once for each ball, stick and piece of an isosurface
+// that they show.
 #pragma once
 
 #include <array>
@@ -30,7 +31,7 @@ struct Light {
 /// rays to the light, and have nothing around them that they could be evened out with.
 inline constexpr std::size_t few_spots = 4;
 
-/// What a pixel shows of one ball or stick.
+/// What a pixel shows of one ball, stick or piece of an isosurface.
 struct Spot {
   SurfacePoint point;
   Vector3d normal;
