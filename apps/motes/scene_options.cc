@@ -49,6 +49,14 @@ std::optional<std::array<double, 3>> triple_in(std::string_view text) {
   return values;
 }
 
+/// The same, if it is not zero.
+std::optional<Vector3d> direction_in(std::string_view text) {
+  const auto values = triple_in(text);
+  if (!values) return std::nullopt;
+  const Vector3d v{(*values)[0], (*values)[1], (*values)[2]};
+  return length(v) > 0 ? std::optional(v) : std::nullopt;
+}
+
 /// Adds an option with one value; `read` makes a change of the scene out of its text.
 void add_option(CLI::App& command, SceneChanges& changes, const std::string& name,
                 const std::string& placeholder, const std::string& description,
@@ -109,15 +117,28 @@ void add_number(CLI::App& command, SceneChanges& changes, const std::string& nam
              });
 }
 
-void add_triple(CLI::App& command, SceneChanges& changes, const std::string& name,
-                const std::string& description, std::function<void(Scene&, const Vector3d&)> set) {
+void add_point(CLI::App& command, SceneChanges& changes, const std::string& name,
+               const std::string& description, std::function<void(Scene&, const Point3d&)> set) {
   add_option(command, changes, name, "X,Y,Z", description,
              [name, set = std::move(set)](const std::string& text) {
-               const auto v = triple_in(text);
-               if (!v) bad_value(name, "three numbers such as 1,2.5,-3", text);
-               return [set, vector = Vector3d{(*v)[0], (*v)[1], (*v)[2]}](Scene& scene) {
-                 set(scene, vector);
+               const auto p = triple_in(text);
+               if (!p) bad_value(name, "three numbers such as 1,2.5,-3", text);
+               return [set, point = Point3d{(*p)[0], (*p)[1], (*p)[2]}](Scene& scene) {
+                 set(scene, point);
                };
+             });
+}
+
+void add_direction(CLI::App& command, SceneChanges& changes, const std::string& name,
+                   const std::string& description,
+                   std::function<void(Scene&, const Vector3d&)> set) {
+  add_option(command, changes, name, "X,Y,Z", description,
+             [name, set = std::move(set)](const std::string& text) {
+               const auto direction = direction_in(text);
+               if (!direction) {
+                 bad_value(name, "three numbers such as 1,2.5,-3, not all of them 0", text);
+               }
+               return [set, v = *direction](Scene& scene) { set(scene, v); };
              });
 }
 
@@ -126,13 +147,14 @@ SceneChanges::Change read_clip_planes(const std::vector<std::string>& texts) {
   std::vector<ClipPlane> planes;
   for (const std::string& text : texts) {
     const auto comma = text.rfind(',');
-    const auto normal = triple_in(text.substr(0, comma));
+    const auto normal = direction_in(text.substr(0, comma));
     const auto distance = number_in(text.substr(std::min(comma, text.size() - 1) + 1));
     if (!normal || !distance || !std::isfinite(*distance)) {
-      bad_value("--clip-plane", "a normal and a distance from the origin such as 0,0,1,12.5", text);
+      bad_value("--clip-plane",
+                "a normal other than 0,0,0 and a distance from the origin such as 0,0,1,12.5",
+                text);
     }
-    planes.push_back({{(*normal)[0], (*normal)[1], (*normal)[2]}, *distance});
-    if (!(length(planes.back().normal) > 0)) throw Error("--clip-plane: a normal must not be zero");
+    planes.push_back({*normal, *distance});
   }
   return [planes](Scene& scene) { scene.render.clip_planes = planes; };
 }
@@ -147,9 +169,8 @@ std::optional<LightSource> light_in(std::string_view text) {
   if (headlight) {
     if (place != "headlight") return std::nullopt;
   } else {
-    const auto direction = triple_in(place);
-    if (!direction) return std::nullopt;
-    light.direction = {(*direction)[0], (*direction)[1], (*direction)[2]};
+    light.direction = direction_in(place);
+    if (!light.direction) return std::nullopt;
   }
   if (!has_intensity) return light;
   const auto intensity = number_in(text.substr(end + 1));
@@ -165,19 +186,15 @@ SceneChanges::Change read_lights(const std::vector<std::string>& texts) {
     const auto light = light_in(text);
     if (!light) {
       bad_value("--light",
-                "a direction such as 1,2,1.5 or headlight, and perhaps an intensity from 0 to a "
-                "million as "
-                "in headlight,0.4",
+                "a direction such as 1,2,1.5, not 0,0,0, or headlight, and perhaps an intensity "
+                "from 0 to a million as in headlight,0.4",
                 text);
-    }
-    if (light->direction && !(length(*light->direction) > 0)) {
-      throw Error("--light: a direction must not be zero");
     }
     lights.push_back(*light);
   }
   if (lights.size() > max_lights) {
-    throw Error(
-        fmt::format("--light: expected at most {} lights, found {}", max_lights, lights.size()));
+    bad_value("--light", fmt::format("at most {} lights", max_lights),
+              fmt::format("{}", lights.size()));
   }
   return [lights](Scene& scene) {
     scene.render.lighting.enabled = true;
@@ -332,16 +349,13 @@ SceneChanges::Change read_engine(const std::string& text) {
 }
 
 void add_camera_options(CLI::App& command, SceneChanges& changes) {
-  add_triple(command, changes, "--eye", "where the camera is (default: all of the data in view)",
-             [](Scene& s, const Vector3d& v) { s.eye = Point3d(v); });
-  add_triple(command, changes, "--target", "what it looks at (default: the middle of the data)",
-             [](Scene& s, const Vector3d& v) { s.target = Point3d(v); });
-  add_triple(command, changes, "--up",
-             "what is up in the picture (default: y, or z for a side view)",
-             [](Scene& s, const Vector3d& v) {
-               if (!(length(v) > 0)) throw Error("--up: a direction must not be zero");
-               s.up = v;
-             });
+  add_point(command, changes, "--eye", "where the camera is (default: all of the data in view)",
+            [](Scene& s, const Point3d& p) { s.eye = p; });
+  add_point(command, changes, "--target", "what it looks at (default: the middle of the data)",
+            [](Scene& s, const Point3d& p) { s.target = p; });
+  add_direction(command, changes, "--up",
+                "what is up in the picture (default: y, or z for a side view)",
+                [](Scene& s, const Vector3d& v) { s.up = v; });
   add_number(command, changes, "--fov", "DEGREES", "vertical field of view (default: 45)", angle,
              [](Scene& s, double v) {
                s.fov_degrees = v;
@@ -370,13 +384,12 @@ void add_lighting_options(CLI::App& command, SceneChanges& changes) {
   };
   CLI::Option* on = add("--lighting", true, "shade by the field's gradient (the default)");
   add("--no-lighting", false, "show colours as they are")->excludes(on);
-  add_triple(command, changes, "--light-direction",
-             "the light's direction, towards it, for shadows (default: from the camera, none)",
-             [](Scene& s, const Vector3d& v) {
-               if (!(length(v) > 0)) throw Error("--light-direction: must not be zero");
-               s.render.lighting.enabled = true;
-               s.render.lighting.lights = {{v, 1}};
-             });
+  add_direction(command, changes, "--light-direction",
+                "the light's direction, towards it, for shadows (default: from the camera, none)",
+                [](Scene& s, const Vector3d& v) {
+                  s.render.lighting.enabled = true;
+                  s.render.lighting.lights = {{v, 1}};
+                });
   command.get_option("--light-direction")->excludes("--no-lighting");
   add_repeatable(command, changes, "--light", "X,Y,Z[,INTENSITY]",
                  "a light: towards it, or headlight, and its intensity (default: 1)", read_lights)

@@ -67,6 +67,24 @@ void warn_of_holes(const GridField& field, const FieldSource& source, Warnings& 
                         all, printable(source.name)));
 }
 
+/// Names the grids that are hidden though the scene does not say so.
+void tell_of_hidden_grids(const std::vector<Field>& wanted, const std::vector<Field>& fields,
+                          Warnings& warnings) {
+  for (const Field& field : fields) {
+    const auto says_so = [&field](const Field& of_scene) {
+      return of_scene.grid && of_scene.grid->path == field.grid->path &&
+             (of_scene.grid->array == field.grid->array || !of_scene.visible);
+    };
+    if (field.visible || !field.grid || std::any_of(wanted.begin(), wanted.end(), says_so))
+      continue;
+    warnings.add(
+        fmt::format("the grid '{0}' is not shown: of several of both signs only the first is; a "
+                    "scene that asks "
+                    "for it (\"array\": \"{0}\") shows it",
+                    printable(field.grid->array)));
+  }
+}
+
 }  // namespace
 
 GatheredScene gather_scene(const Scene& scene, const std::vector<Field>& fields,
@@ -104,6 +122,7 @@ PreparedScene prepare_scene(Scene scene, const ParticleSet& particles,
                             Warnings& warnings) {
   color_by_species(scene, particles);
   const auto fields = expand_fields(scene, particles, grids);
+  tell_of_hidden_grids(scene.fields, fields, warnings);
   auto [sources, geometry] = gather_scene(scene, fields, particles, grids, progress, warnings);
   if (progress != nullptr) progress->update("building the tree", 0);
   Renderer renderer(particles, sources, geometry);

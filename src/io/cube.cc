@@ -138,7 +138,7 @@ std::vector<std::string> numbered_names(std::int64_t count) {
 
 CubeHeader read_header(const std::filesystem::path& path, LineReader& lines,
                        const ReadOptions& options) {
-  lines.next("a title line");
+  const std::string_view title = lines.next("a title line");
   const std::string_view second_title = lines.next("a second title line");
   const CountAndVector first =
       read_count_and_vector(lines, "the number of atoms and the grid's origin", 5);
@@ -154,7 +154,8 @@ CubeHeader read_header(const std::filesystem::path& path, LineReader& lines,
   for (Vector3d& step : header.shape.steps) step = unit * step;
   header.shape.length_unit = "angstrom";
   // Quantum ESPRESSO's words for one period of a periodic function. Nothing else tells.
-  header.shape.periodic = second_title.find("FFT grid") != std::string_view::npos;
+  header.shape.periodic = title.find("PWScf") != std::string_view::npos ||
+                          second_title.find("FFT grid") != std::string_view::npos;
 
   read_atoms(path, lines, static_cast<std::uint64_t>(std::abs(first.count)), unit, options,
              header.atoms);

@@ -250,6 +250,7 @@ class BlockReader {
           fmt::format("expected the three numbers of a grid, found '{}'", printable(trim(line))));
     }
     dims_ = *dims;
+    dims_line_ = lines.line();
     num_samples_ = count_samples(path_, dims_);
     rest_ = lines.rest();
   }
@@ -267,8 +268,8 @@ class BlockReader {
     LineReader lines(path_, numbers.rest(), true);
     if (const std::string_view left = trim(lines.peek()); !left.empty()) {
       lines.next("");
-      lines.fail(fmt::format("expected the end of the line after {} values, found '{}'",
-                             num_samples_, printable(left)));
+      lines.fail(fmt::format("expected the end of the line after {}, found '{}'", values_of_grid(),
+                             printable(left)));
     }
     rest_ = lines.rest();
     return values;
@@ -283,8 +284,11 @@ class BlockReader {
     while (lines.skip_blank_lines()) {
       const std::string_view line = lines.peek();
       const auto tokens = split_tokens(line);
-      if (dims_in(line) == dims_) {
+      if (const auto dims = dims_in(line)) {
         lines.next("");
+        if (*dims != dims_) {
+          lines.fail(fmt::format("expected {} again, found '{}'", grid(), printable(trim(line))));
+        }
         rest_ = lines.rest();
         return true;
       }
@@ -293,33 +297,41 @@ class BlockReader {
         skip_numbers(lines,
                      lines.parse_count(tokens.back(), "the number of augmentation occupancies"));
       } else if (!moments_read && to_real(tokens[0])) {
-        skip_numbers(lines, num_atoms_);
+        skip_numbers(lines, num_atoms_,
+                     fmt::format(" of atoms or the end of the file after {}", values_of_grid()));
         moments_read = true;
       } else {
         lines.next("");
-        lines.fail(
-            fmt::format("expected augmentation occupancies, the grid's {} {} {} again or the "
-                        "end of the file, found '{}'",
-                        dims_[0], dims_[1], dims_[2], printable(trim(line))));
+        lines.fail(fmt::format(
+            "expected augmentation occupancies, {} again or the end of the file, found '{}'",
+            grid(), printable(trim(line))));
       }
     }
     // (numbers that nothing follows are values too many)
     if (moments_read) {
-      lines.fail(fmt::format("expected the grid's {} {} {} again behind these numbers", dims_[0],
-                             dims_[1], dims_[2]));
+      lines.fail(
+          fmt::format("expected {} again behind the numbers after {}", grid(), values_of_grid()));
     }
     return false;
   }
 
  private:
-  /// `count` numbers, which end a line.
-  static void skip_numbers(LineReader& lines, std::uint64_t count) {
+  std::string grid() const {
+    return fmt::format("the grid's {} {} {}", dims_[0], dims_[1], dims_[2]);
+  }
+  std::string values_of_grid() const {
+    return fmt::format("{} values ({} x {} x {} by line {})", num_samples_, dims_[0], dims_[1],
+                       dims_[2], dims_line_);
+  }
+
+  /// `count` numbers, which end a line; `of` says which and what else may be there.
+  static void skip_numbers(LineReader& lines, std::uint64_t count, std::string_view of = "") {
     for (std::uint64_t found = 0; found < count;) {
       for (const std::string_view token : split_tokens(lines.next("the numbers of the atoms"))) {
         double value = 0;
         const char* const end = token.data() + token.size();
         if (parse_fortran_real(token.data(), end, value) != end || ++found > count) {
-          lines.fail(fmt::format("expected {} numbers, found '{}' after {}", count,
+          lines.fail(fmt::format("expected {} numbers{}, found '{}' behind {} of them", count, of,
                                  printable(token), std::min(found, count)));
         }
       }
@@ -331,6 +343,7 @@ class BlockReader {
   std::size_t num_atoms_;
   TextBlock rest_;
   std::array<std::size_t, 3> dims_{};
+  std::uint64_t dims_line_ = 0;
   std::uint64_t num_samples_ = 0;
 };
 

@@ -84,31 +84,39 @@ class ArrayReader {
                   [&](std::uint64_t n, double value) { values[n] = static_cast<float>(value); });
   }
 
-  /// Where the array's bytes begin, and all that follows them.
+  /// The bytes that the file has for the array: those appended end where the next array begins, or
+  /// their XML element.
   std::string_view stored() const {
     if (array_.format != "appended") return array_.text;
     if (array_.offset > header_.appended.size()) {
       fail(fmt::format("begins at byte {} of the appended data; expected at most {}", array_.offset,
                        header_.appended.size()));
     }
-    const std::string_view rest = header_.appended.substr(array_.offset);
+    std::uint64_t end = header_.appended.rfind("</AppendedData");  // (raw bytes may hold that too)
+    for (const VtiArray& other : header_.arrays) {
+      if (other.format == "appended" && other.offset > array_.offset) {
+        end = std::min(end, other.offset);
+      }
+    }
+    const std::string_view rest = header_.appended.substr(array_.offset, end - array_.offset);
     // (text ends where XML goes on)
     return header_.appended_base64 ? rest.substr(0, rest.find('<')) : rest;
   }
 
-  /// The array's first `count` bytes, decoded into `storage` if they must be.
+  /// The array's first `count` bytes, or all that the file has, decoded into `storage` if they must
+  /// be.
+  std::string_view at_most(std::uint64_t count, std::string& storage) const {
+    const std::string_view stored = this->stored();
+    if (array_.format != "binary" && !header_.appended_base64) return stored.substr(0, count);
+    auto bytes = decode_base64(stored, count);
+    if (!bytes) fail("is no good base64");
+    storage = std::move(*bytes);
+    return storage;
+  }
   std::string_view first_bytes(std::uint64_t count, std::string& storage) const {
-    std::string_view stored = this->stored();
-    if (array_.format == "binary" || header_.appended_base64) {
-      auto bytes = decode_base64(stored, count);
-      if (!bytes) fail("is no good base64");
-      storage = std::move(*bytes);
-      stored = storage;
-    }
-    if (stored.size() < count) {
-      fail(fmt::format("ends after {} of {} bytes", stored.size(), count));
-    }
-    return stored.substr(0, count);
+    const std::string_view bytes = at_most(count, storage);
+    if (bytes.size() < count) fail(fmt::format("ends after {} of {} bytes", bytes.size(), count));
+    return bytes;
   }
 
   /// Number `index` of those that stand before the values.
@@ -156,10 +164,34 @@ class ArrayReader {
     const std::size_t width = header_.header_bytes;
     const std::string_view size = first_bytes(width, storage);
     expect_size([&](bool big) { return static_cast<double>(header_number(size, 0, big)); });
+    check_header_type();
     const std::string_view bytes = first_bytes(width + value_bytes(), storage).substr(width);
     warn_if_swapped(bytes);
     values.resize(num_samples_);
     convert_scalars(bytes, type_, header_.big_endian, values);
+  }
+
+  /// Whether the values, behind a number of `width` bytes, end where those in the file do.
+  bool ends_behind(std::size_t width, std::string_view bytes) const {
+    if (bytes.size() < width + value_bytes()) return false;
+    // (padding and blanks may follow)
+    const std::string_view behind = bytes.substr(width + value_bytes());
+    return behind.find_first_not_of(std::string_view("\0 \t\r\n", 5)) == std::string_view::npos;
+  }
+
+  /// The number in front of the values may be the same in 4 bytes and in 8, and the values then
+  /// begin elsewhere.
+  void check_header_type() const {
+    std::string storage;
+    const std::size_t width = header_.header_bytes, other = 12 - width;
+    const std::string_view bytes = at_most(width + other + value_bytes(), storage);
+    if (bytes.size() < other + value_bytes()) return;
+    const bool same =
+        other == 8 ? load_scalar<std::uint64_t>(bytes.data(), header_.big_endian) == value_bytes()
+                   : load_scalar<std::uint32_t>(bytes.data(), header_.big_endian) == value_bytes();
+    if (!same || ends_behind(width, bytes) || !ends_behind(other, bytes)) return;
+    fail(fmt::format("does not end behind its {} bytes; with header_type=\"{}\" it would",
+                     value_bytes(), other == 8 ? "UInt64" : "UInt32"));
   }
 
   struct Block {

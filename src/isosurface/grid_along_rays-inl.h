@@ -1,6 +1,6 @@
 // A field that is a grid along the rays of a packet, and around a point. Beyond the hull, where
-// there is no field, it goes on as it is on the face: so there is nothing to cross. Included once
-// per instruction set.
+// there is no field, it goes on as it is on the face: so there is nothing to cross but the face
+// itself. Included once per instruction set.
 #if defined(MOTES_ISOSURFACE_GRID_ALONG_RAYS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef MOTES_ISOSURFACE_GRID_ALONG_RAYS_INL_H_
 #undef MOTES_ISOSURFACE_GRID_ALONG_RAYS_INL_H_
@@ -26,18 +26,27 @@ namespace HWY_NAMESPACE {
 /// hull. Rays that miss it have near > far.
 struct IndexRays {
   alignas(64) float start[3][max_lanes], along[3][max_lanes], near[max_lanes], far[max_lanes];
+  std::uint8_t near_axis[max_lanes], far_axis[max_lanes];  ///< of the faces there
 
   void set(std::size_t lane, const GridView& grid, const double (&from)[3],
            const double (&direction)[3]) {
     double first = -std::numeric_limits<float>::max(), last = -first;
+    near_axis[lane] = far_axis[lane] = 0;
     for (std::size_t i = 0; i < 3; ++i) {
       start[i][lane] = static_cast<float>(from[i]);
       along[i][lane] = static_cast<float>(direction[i]);
       // (a ray along a face: depths become huge, and 0 on the face itself)
       const double inverse = 1 / (direction[i] == 0 ? 1e-290 : direction[i]);
       const double a = -from[i] * inverse, b = (grid.num_cells[i] - from[i]) * inverse;
-      first = std::max(first, std::min(a, b));
-      last = std::min(last, std::max(a, b));
+      const auto axis = static_cast<std::uint8_t>(i);
+      if (std::min(a, b) > first) {
+        first = std::min(a, b);
+        near_axis[lane] = axis;
+      }
+      if (std::max(a, b) < last) {
+        last = std::max(a, b);
+        far_axis[lane] = axis;
+      }
     }
     const bool any = first <= last;
     near[lane] = any ? static_cast<float>(first) : 1;
@@ -99,7 +108,7 @@ inline bool may_take_level(const IsosurfaceGrid& grid, const double (&low)[3],
 /// What KernelsAlongRays is for kernels.
 class GridAlongRays {
  public:
-  static constexpr bool zero_elsewhere = false;
+  static constexpr bool zero_elsewhere = false, has_faces = true;
 
   GridAlongRays(const IsosurfaceFrame& frame, const SamplingConstants& /*constants*/,
                 const FieldIsosurfaces& field)
@@ -152,10 +161,13 @@ class GridAlongRays {
   /// False if nothing is crossed between planes begin and end.
   bool may_cross(int begin, int end) const {
     const LaneTag d;
-    const GridPoints a = rays_.at(hn::Set(d, plane_depth(slab_, begin)));
-    const GridPoints b = rays_.at(hn::Set(d, plane_depth(slab_, end)));
-    const LaneMask meet = rays_.meet();
+    // (before the hull and behind it there is nothing either)
+    const Lanes first = hn::Set(d, plane_depth(slab_, begin)),
+                last = hn::Set(d, plane_depth(slab_, end));
+    const LaneMask meet = hn::And(rays_.meet(), hn::And(hn::Le(hn::Load(d, rays_.near), last),
+                                                        hn::Ge(hn::Load(d, rays_.far), first)));
     if (hn::AllFalse(d, meet)) return false;
+    const GridPoints a = rays_.at(first), b = rays_.at(last);
     const Lanes infinity = hn::Set(d, std::numeric_limits<float>::infinity());
     double low[3], high[3];
     const auto bound = [&](int i, Lanes p, Lanes q) HWY_ATTR {
@@ -206,6 +218,24 @@ class GridAlongRays {
     return sums;
   }
 
+  /// Where the rays enter the hull or leave it.
+  Lanes face_depths(bool entering) const {
+    return hn::Load(LaneTag(), entering ? rays_.near : rays_.far);
+  }
+  /// Lanes that do so behind depth low, up to high.
+  unsigned pass_face(bool entering, Lanes low, Lanes high) const {
+    const LaneTag d;
+    const Lanes z = face_depths(entering);
+    return mask_bits(d, hn::And(rays_.meet(), hn::And(hn::Gt(z, low), hn::Le(z, high))));
+  }
+  /// At right angles to the face that a lane passes, to the side that its ray comes from; camera
+  /// axes, of any length.
+  Vector3d face_side(bool entering, std::size_t lane) const {
+    const std::size_t i = (entering ? rays_.near_axis : rays_.far_axis)[lane];
+    const Vector3d across{axes_[i][0], axes_[i][1], axes_[i][2]};
+    return rays_.along[i][lane] > 0 ? -across : across;
+  }
+
  private:
   const IsosurfaceGrid& grid_;
   double eye_[3], axes_[3][3];  ///< index coordinates; of their gradients, camera axes
@@ -216,6 +246,8 @@ class GridAlongRays {
 /// What Surroundings is for kernels.
 class GridSurroundings {
  public:
+  static constexpr bool has_faces = true;
+
   GridSurroundings(const IsosurfaceGrid& grid, const Point3d& p) : grid_(grid) {
     for (int i = 0; i < 3; ++i) start_[i] = grid.index_of(i, p);
   }
@@ -229,6 +261,15 @@ class GridSurroundings {
     }
   }
   void enter(float /*near*/, float /*far*/) {}
+
+  /// Lanes that enter the hull behind distance low, up to high; at which distances.
+  unsigned pass_face(float low, float high) const {
+    const LaneTag d;
+    const Lanes t = face_distances();
+    return mask_bits(
+        d, hn::And(rays_.meet(), hn::And(hn::Gt(t, hn::Set(d, low)), hn::Le(t, hn::Set(d, high)))));
+  }
+  Lanes face_distances() const { return hn::Load(LaneTag(), rays_.near); }
 
   HWY_NOINLINE Lanes evaluate(float distance) const {
     const LaneTag d;

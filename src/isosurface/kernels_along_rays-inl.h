@@ -29,7 +29,7 @@ struct GradientAndColor {
 class KernelsAlongRays {
  public:
   /// The field is 0 where it cannot be crossed.
-  static constexpr bool zero_elsewhere = true;
+  static constexpr bool zero_elsewhere = true, has_faces = false;
 
   KernelsAlongRays(const IsosurfaceFrame& frame, const SamplingConstants& constants,
                    const FieldIsosurfaces& field)

@@ -95,6 +95,10 @@ class SlabMarch {
       const unsigned in_before = mask_bits(d, hn::Gt(before, hn::Zero(d)));
       const unsigned in_after = mask_bits(d, hn::Gt(after, hn::Zero(d)));
       unsigned hits = 0;
+      if constexpr (Field::has_faces) {
+        hits |= cross_face(true, level, k, low, high, in_before);
+        hits |= cross_face(false, level, k, low, high, in_after);
+      }
       if (const unsigned cross = (in_before ^ in_after) & packet_->active; cross != 0) {
         hits |= refine(level, k, low, high, in_before, cross);
       }
@@ -106,6 +110,19 @@ class SlabMarch {
       if (level.opacity >= 1) ended |= hits;
     }
     packet_->active &= ~ended;
+  }
+
+  /// Caps: where rays enter or leave the hull within what the level encloses, which is what is
+  /// farther from 0. `above`: the lanes whose field is above the level there.
+  unsigned cross_face(bool entering, const IsosurfaceLevel& level, int k, Lanes low, Lanes high,
+                      unsigned above) {
+    if (level.value == 0) return 0;
+    const unsigned enclosed = level.value > 0 ? above : ~above;
+    const unsigned lanes = along_.pass_face(entering, low, high) & enclosed & packet_->active;
+    if (lanes == 0) return 0;
+    return finish(
+        level, k, along_.face_depths(entering), lanes,
+        [&](std::size_t l, const Vector3d& /*gradient*/) { return along_.face_side(entering, l); });
   }
 
   /// Lanes whose field is on one side of the level on both planes, k - 1 and k, but on the other
@@ -167,12 +184,16 @@ class SlabMarch {
       low = hn::IfThenElse(as_low, z, low);
       high = hn::IfThenElse(as_low, high, z);
     }
-    return finish(level, k, hn::Mul(hn::Set(d, 0.5f), hn::Add(low, high)), inside, lanes);
+    return finish(level, k, hn::Mul(hn::Set(d, 0.5f), hn::Add(low, high)), lanes,
+                  [inside](std::size_t l, const Vector3d& gradient) {
+                    return (inside >> l & 1) != 0 ? gradient : -gradient;
+                  });
   }
 
   /// Adds the crossings of lanes at depths z to the hits, but for those that are clipped away.
-  /// Lanes of `inside` come from above the level.
-  unsigned finish(const IsosurfaceLevel& level, int k, Lanes z, unsigned inside, unsigned lanes) {
+  /// to_side(lane, gradient): at right angles to the surface, to the side that the ray comes from.
+  template <class ToSide>
+  unsigned finish(const IsosurfaceLevel& level, int k, Lanes z, unsigned lanes, ToSide&& to_side) {
     const LaneTag d;
     const GradientAndColor at = along_.gradient_and_color(level, k, z);
     alignas(64) float depths[max_lanes], gradients[3][max_lanes], colors[3][max_lanes],
@@ -189,7 +210,7 @@ class SlabMarch {
       if (is_clipped(l, hit.depth)) continue;
       kept |= 1u << l;
       const Vector3d gradient{gradients[0][l], gradients[1][l], gradients[2][l]};
-      hit.normal = normal_of(l, (inside >> l & 1) != 0 ? gradient : -gradient);
+      hit.normal = normal_of(l, to_side(l, gradient));
       const float weight = weights[l];
       if (level.colors.size() > 1 && weight > 0) {
         hit.color = {colors[0][l] / weight, colors[1][l] / weight, colors[2][l] / weight};

@@ -47,6 +47,8 @@ HWY_INLINE unsigned children_within(const Bvh::Node& node, const Point3f& p, flo
 /// The surroundings of a point in one field. One at a time on a thread.
 class Surroundings {
  public:
+  static constexpr bool has_faces = false;
+
   Surroundings(const KernelSet& kernels, const SamplingConstants& constants, std::size_t f,
                const Point3d& start)
       : kernels_(kernels), constants_(constants), f_(f), start_(start), local_(scratch()) {
@@ -197,57 +199,101 @@ class Surroundings {
   double spread_ = 0;  ///< how far they are from it at most
 };
 
+/// Some directions of one field's surroundings on their way out: which of them are still open.
+template <class Field>
+class OpenDirections {
+ public:
+  /// directions: of `count` lanes.
+  OpenDirections(const IsosurfaceFrame& frame, const Field& surroundings,
+                 const FieldIsosurfaces& field, const Point3d& start, const Vector3f* directions,
+                 std::size_t count)
+      : frame_(frame),
+        surroundings_(surroundings),
+        field_(field),
+        start_(start),
+        directions_(directions),
+        open_((1u << count) - 1) {}
+
+  bool any() const { return open_ != 0; }
+  bool is_open(std::size_t lane) const { return (open_ >> lane & 1) != 0; }
+
+  /// Closes those that meet an opaque level between two distances, where the field is `before` and
+  /// `after`.
+  void close_between(float low, float high, Lanes before, Lanes after) {
+    const LaneTag d;
+    const Lanes from = hn::Set(d, low), spacing = hn::Set(d, high - low);
+    for (const IsosurfaceLevel& level : field_.levels) {
+      if (level.opacity < 1) continue;
+      const Lanes v = hn::Set(d, level.value);
+      const unsigned above = mask_bits(d, hn::Gt(before, v));
+      if constexpr (Field::has_faces) {
+        const unsigned enclosed = level.value > 0 ? above : ~above;
+        const bool capped = level.value != 0;
+        close(capped ? surroundings_.pass_face(low, high) & enclosed : 0,
+              surroundings_.face_distances());
+      }
+      const Lanes part = hn::Div(hn::Sub(v, before), hn::Sub(after, before));
+      close(mask_bits(d, hn::Gt(after, v)) ^ above, hn::MulAdd(spacing, part, from));
+    }
+  }
+
+ private:
+  /// Closes those of `lanes` whose place at `distance` is not clipped away.
+  void close(unsigned lanes, Lanes distance) {
+    lanes &= open_;
+    if (lanes == 0) return;
+    alignas(64) float distances[max_lanes];
+    hn::Store(distance, LaneTag(), distances);
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const auto l = static_cast<std::size_t>(__builtin_ctz(lanes));
+      const Point3d place = start_ + static_cast<double>(distances[l]) * Vector3d(directions_[l]);
+      if (!is_clipped(frame_, place)) open_ &= ~(1u << l);
+    }
+  }
+
+  const IsosurfaceFrame& frame_;
+  const Field& surroundings_;
+  const FieldIsosurfaces& field_;
+  Point3d start_;
+  const Vector3f* directions_;
+  unsigned open_;
+};
+
 /// Leaves out the directions along which a level comes within `length`, for the levels of one field
 /// that are opaque.
 template <class Field>
 void prune_by_field(const IsosurfaceFrame& frame, Field& surroundings,
                     const FieldIsosurfaces& field, const Point3d& start, float length,
                     std::vector<Vector3f>& directions) {
-  const LaneTag d;
   constexpr double steps_of_samples = 1.5;  // from one to the next
   const double most = steps_of_samples * frame.planes.step;
   const int count = std::max(1, static_cast<int>(std::ceil(static_cast<double>(length) / most)));
   const float spacing = length / static_cast<float>(count);
   std::size_t size = 0;
-  for (std::size_t first = 0; first < directions.size(); first += hn::Lanes(d)) {
-    const std::size_t there = std::min(directions.size() - first, hn::Lanes(d));
+  for (std::size_t first = 0; first < directions.size(); first += hn::Lanes(LaneTag())) {
+    const std::size_t there = std::min(directions.size() - first, hn::Lanes(LaneTag()));
     alignas(64) float lanes[3][max_lanes] = {};
     for (std::size_t l = 0; l < there; ++l) {
       for (int i = 0; i < 3; ++i) lanes[i][l] = directions[first + l][i];
     }
     surroundings.look_along(lanes, there);
+    OpenDirections<Field> open(frame, surroundings, field, start, &directions[first], there);
     // Long ways in pieces, so that each sample meets but the kernels near it.
     constexpr int piece = 16;
     surroundings.enter(0, spacing * static_cast<float>(std::min(piece, count)));
     Lanes before = surroundings.evaluate(0);
-    unsigned open = (1u << there) - 1;
-    for (int i = 1; i <= count && open != 0; ++i) {
+    for (int i = 1; i <= count && open.any(); ++i) {
+      const float low = spacing * static_cast<float>(i - 1);
+      const float high = spacing * static_cast<float>(i);
       if (i > piece && i % piece == 1) {
-        surroundings.enter(spacing * static_cast<float>(i - 1),
-                           spacing * static_cast<float>(std::min(i - 1 + piece, count)));
+        surroundings.enter(low, spacing * static_cast<float>(std::min(i - 1 + piece, count)));
       }
-      const Lanes value = surroundings.evaluate(spacing * static_cast<float>(i));
-      for (const IsosurfaceLevel& level : field.levels) {
-        if (level.opacity < 1) continue;
-        const Lanes v = hn::Set(d, level.value);
-        const unsigned crossed =
-            (mask_bits(d, hn::Gt(value, v)) ^ mask_bits(d, hn::Gt(before, v))) & open;
-        if (crossed == 0) continue;
-        const Lanes part = hn::Div(hn::Sub(v, before), hn::Sub(value, before));
-        alignas(64) float parts[max_lanes];
-        hn::Store(part, d, parts);
-        for (unsigned bits = crossed; bits != 0; bits &= bits - 1) {
-          const auto l = static_cast<std::size_t>(__builtin_ctz(bits));
-          const float distance = spacing * (static_cast<float>(i - 1) + parts[l]);
-          const Point3d place =
-              start + static_cast<double>(distance) * Vector3d(directions[first + l]);
-          if (!is_clipped(frame, place)) open &= ~(1u << l);
-        }
-      }
-      before = value;
+      const Lanes after = surroundings.evaluate(high);
+      open.close_between(low, high, before, after);
+      before = after;
     }
     for (std::size_t l = 0; l < there; ++l) {
-      if ((open >> l & 1) != 0) directions[size++] = directions[first + l];
+      if (open.is_open(l)) directions[size++] = directions[first + l];
     }
   }
   directions.resize(size);

@@ -22,8 +22,10 @@ BondRule::BondRule(const std::vector<std::string>& species_names) {
   for (const std::uint8_t a : elements_) {
     for (const std::uint8_t b : elements_) {
       if (a == no_element || b == no_element || (a == hydrogen && b == hydrogen)) continue;
-      const double reach = static_cast<double>(element_by_number(a)->covalent_radius) +
-                           static_cast<double>(element_by_number(b)->covalent_radius) + tolerance;
+      const Element &first = *element_by_number(a), &second = *element_by_number(b);
+      if (is_metal(first) && is_metal(second)) continue;
+      const double reach = static_cast<double>(first.covalent_radius) +
+                           static_cast<double>(second.covalent_radius) + tolerance;
       squares_[index(a, b)] = reach * reach;
       longest_ = std::max(longest_, reach);
     }

@@ -17,8 +17,9 @@ namespace motes {
 ///     0.4 A < d <= r_i + r_j + 0.45 A
 ///
 /// with the covalent radii of their elements (Cordero et al. 2008), but never two hydrogens: the
-/// rule of OpenEye's OEDetermineConnectivity and of Open Babel. The file's length unit is taken for
-/// angstrom. Species that are no elements have no bonds.
+/// rule of OpenEye's OEDetermineConnectivity and of Open Babel. Nor two metals, whose bonds have no
+/// directions: each atom would have a dozen. The file's length unit is taken for angstrom. Species
+/// that are no elements have no bonds.
 class BondRule {
  public:
   static constexpr std::uint8_t no_element = 0;

@@ -169,4 +169,9 @@ float van_der_waals_radius(const Element& element) {
   return gemmi::vdw_radius(static_cast<gemmi::El>(element.number));
 }
 
+bool is_metal(const Element& element) {
+  const auto el = static_cast<gemmi::El>(element.number);
+  return gemmi::is_metal(el) && el != gemmi::El::Ge && el != gemmi::El::Sb;
+}
+
 }  // namespace motes

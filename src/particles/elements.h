@@ -19,6 +19,9 @@ struct Element {
 /// gemmi gives them.
 float van_der_waals_radius(const Element& element);
 
+/// gemmi's list, without germanium and antimony, whose bonds have directions.
+bool is_metal(const Element& element);
+
 /// The element that a species' name begins with, or null. Case does not matter. The symbol may be
 /// followed by digits, charge signs and marks ("Si1", "O2-", "Fe3+", "H*") and by a suffix after an
 /// underscore ("C_R"); any other letter makes it another word: "water" is not tungsten.

@@ -33,13 +33,22 @@ IsosurfaceGrid make_grid(const GridField& field, const std::vector<IsosurfaceLev
     grid.axes[i] = sampler.to_world_gradient(one) / kernels.length_scale;
   }
   grid.value_scale = kernels.fields[field.field].value_scale;
-  grid.dims = field.cells->dims();
-  for (const MacroCells::Range& range : field.cells->ranges()) {
-    const bool any = std::any_of(levels.begin(), levels.end(), [&](const IsosurfaceLevel& level) {
-      const double value = level.value / grid.value_scale;
-      return range.min <= value && value <= range.max;
-    });
-    grid.crosses.push_back(any ? 1 : 0);
+  const auto& dims = grid.dims = field.cells->dims();
+  for (int k = 0; k < dims[2]; ++k) {
+    for (int j = 0; j < dims[1]; ++j) {
+      for (int i = 0; i < dims[0]; ++i) {
+        const bool on_face =
+            i == 0 || j == 0 || k == 0 || i == dims[0] - 1 || j == dims[1] - 1 || k == dims[2] - 1;
+        MacroCells::Range range = field.cells->at(i, j, k);
+        // Beyond the face of what a level encloses there is nothing.
+        if (on_face) range = {std::min(range.min, 0.0F), std::max(range.max, 0.0F)};
+        const bool any = std::any_of(levels.begin(), levels.end(), [&](const auto& level) {
+          const double value = level.value / grid.value_scale;
+          return range.min <= value && value <= range.max;
+        });
+        grid.crosses.push_back(any ? 1 : 0);
+      }
+    }
   }
   return grid;
 }

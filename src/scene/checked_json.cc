@@ -26,6 +26,42 @@ std::string describe(const json& value) {
   return printable(value.dump(-1, ' ', false, json::error_handler_t::replace), 40);
 }
 
+/// Where keys stand that people look for elsewhere; those that are in one place alone.
+constexpr struct {
+  std::string_view key, place;
+} places[] = {
+    {"eye", "camera"},
+    {"target", "camera"},
+    {"fov", "camera"},
+    {"orthographic", "camera"},
+    {"frame", "data"},
+    {"types", "data"},
+    {"support_factor", "kernel"},
+    {"kernel_scale", "kernel"},
+    {"isosurfaces", "a field"},
+    {"transfer_function", "a field"},
+    {"weight", "a field"},
+    {"normalise", "a field"},
+    {"interpolation", "a field's grid"},
+    {"array", "a field's grid"},
+    {"extinction", "a field's transfer_function"},
+    {"bonds", "sticks of geometry"},
+    {"step_size", "render"},
+    {"termination_opacity", "render"},
+    {"lighting", "render"},
+    {"clip_planes", "render"},
+    {"background", "render"},
+    {"engine", "render"},
+    {"lights", "render.lighting"},
+    {"direction", "a light of render.lighting.lights"},
+    {"intensity", "a light of render.lighting.lights"},
+    {"antialiasing", "render.surface"},
+    {"ambient_occlusion", "render.surface"},
+    {"occlusion_distance", "render.surface"},
+    {"shadows", "render.surface"},
+    {"light_angle", "render.surface"},
+};
+
 /// Refuses what JSON allows but no scene has: deep nesting, a key twice in one object.
 class Guard {
  public:
@@ -60,6 +96,11 @@ void CheckedJson::check_keys(const std::vector<std::string>& known) const {
   if (!value_.is_object()) expected("an object");
   for (const auto& item : value_.items()) {
     if (std::find(known.begin(), known.end(), item.key()) == known.end()) {
+      const auto* const place = std::find_if(std::begin(places), std::end(places),
+                                             [&](const auto& p) { return p.key == item.key(); });
+      if (place != std::end(places)) {
+        fail(fmt::format("the key '{}' belongs in {}", item.key(), place->place));
+      }
       std::string what = unknown_name("key", item.key(), known).what();
       if (nearest_word(item.key(), known).empty()) {
         what += fmt::format("; the nearest known key is '{}'", closest_word(item.key(), known));

@@ -50,6 +50,17 @@ std::vector<float> radii_of_species(const ParticleSet& particles, ElementRadius 
 
 }  // namespace
 
+const std::vector<std::string>& element_radius_names() {
+  static const std::vector<std::string> names{"van_der_waals", "covalent"};
+  return names;
+}
+
+std::optional<ElementRadius> element_radius_from_name(std::string_view name) {
+  if (name == "van_der_waals") return ElementRadius::van_der_waals;
+  if (name == "covalent") return ElementRadius::covalent;
+  return std::nullopt;
+}
+
 std::vector<float> radii_by_element(const ParticleSet& particles, ElementRadius table,
                                     const std::vector<bool>& wanted, Warnings& warnings,
                                     Progress* progress) {

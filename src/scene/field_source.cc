@@ -78,9 +78,7 @@ std::optional<ElementRadius> radius_table(const ParticleSet& particles,
                                           const NumberOrProperty& radius) {
   const auto* name = std::get_if<std::string>(&radius);
   if (name == nullptr || particles.find_property(*name) != nullptr) return std::nullopt;
-  if (*name == "van_der_waals") return ElementRadius::van_der_waals;
-  if (*name == "covalent") return ElementRadius::covalent;
-  return std::nullopt;
+  return element_radius_from_name(*name);
 }
 
 /// The radii that a field gives, one a particle or one for all; those of particles that are not in
@@ -146,9 +144,14 @@ Color species_color(const ParticleSet& particles, const std::vector<std::uint32_
 
 }  // namespace
 
-const Property& property_named(const ParticleSet& particles, const std::string& name) {
+const Property& property_named(const ParticleSet& particles, const std::string& name,
+                               const std::vector<std::string>& others) {
   const Property* property = particles.find_property(name);
-  if (property == nullptr) throw unknown_name("property", name, property_names(particles));
+  if (property == nullptr) {
+    std::vector<std::string> names = property_names(particles);
+    names.insert(names.end(), others.begin(), others.end());
+    throw unknown_name("property", name, names);
+  }
   return *property;
 }
 
@@ -354,7 +357,10 @@ void check_names(const std::vector<Field>& fields, const ParticleSet& particles)
         key = fmt::format("fields[{}].{}", k, name);
         const auto* property = *value ? std::get_if<std::string>(&**value) : nullptr;
         const bool of_table = value == &field.radius && *value && radius_table(particles, **value);
-        if (property != nullptr && !of_table) property_named(particles, *property);
+        if (property == nullptr || of_table) continue;
+        property_named(
+            particles, *property,
+            value == &field.radius ? element_radius_names() : std::vector<std::string>());
       }
     }
   } catch (const Error& error) {

@@ -97,45 +97,65 @@ Bounds3d box_of(const std::vector<VisibleSphere>& spheres) {
   return {corner[0], corner[1]};
 }
 
-/// Corners of the part of a grid in which there is something to be seen: magnitudes of a tenth of
-/// the level that encloses most of the field if it `draws_volume`, or of an isosurface at
-/// `least_level`. Large grids are looked at here and there.
-std::array<Point3d, 8> visible_corners(const Grid& grid, bool draws_volume, double least_level) {
-  if (grid.periodic) return corners_of(grid);
+/// Some of the numbers of a grid's samples along an axis: the first, the last and every `stride`-th
+/// between them. Of a periodic one the sample behind the last is the first's image.
+std::vector<std::size_t> some_samples(const Grid& grid, std::size_t axis, std::size_t stride) {
+  const std::size_t last = grid.periodic ? grid.dims[axis] : grid.dims[axis] - 1;
+  std::vector<std::size_t> samples;
+  for (std::size_t i = 0; i < last; i += stride) samples.push_back(i);
+  samples.push_back(last);
+  return samples;
+}
+
+/// The ends of each of the grid's lines of samples along x in which there is something to be seen:
+/// magnitudes of three tenths of the level that encloses most of the field if it `draws_volume`, or
+/// of an isosurface at `least_level`. Its corners if there is nothing. Large grids are looked at
+/// here and there.
+std::vector<Point3d> visible_points(const Grid& grid, bool draws_volume, double least_level) {
   const double excess = static_cast<double>(grid.size()) / samples_looked_at;
   const auto stride = static_cast<std::size_t>(std::max(1.0, std::ceil(std::cbrt(excess))));
+  const auto columns = some_samples(grid, 0, stride), rows = some_samples(grid, 1, stride),
+             layers = some_samples(grid, 2, stride);
   std::vector<float> values;
-  const auto for_samples = [&](auto&& use) {
-    for (std::size_t k = 0; k < grid.dims[2]; k += stride) {
-      for (std::size_t j = 0; j < grid.dims[1]; j += stride) {
-        for (std::size_t i = 0; i < grid.dims[0]; i += stride) {
-          use(grid.values[grid.index(i, j, k)], std::array{i, j, k});
-        }
+  for (const std::size_t k : layers) {
+    for (const std::size_t j : rows) {
+      for (const std::size_t i : columns) {
+        const auto& dims = grid.dims;
+        values.push_back(grid.values[grid.index(i % dims[0], j % dims[1], k % dims[2])]);
       }
     }
-  };
-  for_samples([&](float value, const auto& /*index*/) { values.push_back(value); });
+  }
   double least = least_level;
   if (draws_volume) {
-    least = std::min(least, 0.1 * enclosing_level(values, signs_of(values)));
+    least = std::min(least, 0.3 * enclosing_level(values, signs_of(values)));
   }
-  std::array<std::size_t, 3> first = grid.dims, last{};
-  for_samples([&](float value, const std::array<std::size_t, 3>& index) {
-    if (!(std::abs(static_cast<double>(value)) >= least)) return;
-    for (std::size_t a = 0; a < 3; ++a) {
-      first[a] = std::min(first[a], index[a] - std::min(index[a], stride));
-      last[a] = std::max(last[a], std::min(index[a] + stride, grid.dims[a] - 1));
+  const auto seen = [least](float value) { return std::abs(static_cast<double>(value)) >= least; };
+  std::vector<Point3d> points;
+  const float* line = values.data();
+  for (const std::size_t k : layers) {
+    for (const std::size_t j : rows) {
+      const auto add = [&](std::ptrdiff_t n) {
+        const std::size_t i = columns[static_cast<std::size_t>(n)];
+        points.push_back(
+            grid.position(static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)));
+      };
+      const float* const end = line + columns.size();
+      const float* const first = std::find_if(line, end, seen);
+      if (first != end) {
+        const float* last = end - 1;
+        while (!seen(*last)) --last;
+        // (up to where nothing is seen)
+        add(std::max(first - line - 1, std::ptrdiff_t{0}));
+        add(std::min(last - line + 1, end - line - 1));
+      }
+      line = end;
     }
-  });
-  if (first[0] == grid.dims[0]) return corners_of(grid);
-  std::array<Point3d, 8> corners;
-  for (std::size_t c = 0; c < 8; ++c) {
-    const auto end = [&](std::size_t a) {
-      return static_cast<double>((c >> a & 1) != 0 ? last[a] : first[a]);
-    };
-    corners[c] = grid.position(end(0), end(1), end(2));
   }
-  return corners;
+  if (points.empty()) {
+    const auto corners = corners_of(grid);
+    points.assign(corners.begin(), corners.end());
+  }
+  return points;
 }
 
 /// Whether field f does; those that are not there say nothing else.
@@ -206,16 +226,18 @@ void add_isosurfaces(const ParticleSet& particles, const FieldSource& source, co
   }
 }
 
-/// Adds the corners of all grids, so often that they are no strays.
-void add_corners(const std::vector<FieldSource>& sources, const std::vector<Field>& fields,
-                 std::vector<VisibleSphere>& spheres) {
-  const std::size_t times = 1 + spheres.size() / stray_share;
+/// Adds what is to be seen of all grids, as often as it takes to be no strays.
+void add_grids(const std::vector<FieldSource>& sources, const std::vector<Field>& fields,
+               std::vector<VisibleSphere>& spheres) {
+  constexpr std::size_t parts = 8;  // of a grid, none of which is a stray
+  const std::size_t others = spheres.size();
   for (std::size_t f = 0; f < sources.size(); ++f) {
     if (!sources[f].grid) continue;
-    const auto corners =
-        visible_corners(*sources[f].grid, draws_volume(fields, f), least_level_of(fields, f));
+    const std::vector<Point3d> points =
+        visible_points(*sources[f].grid, draws_volume(fields, f), least_level_of(fields, f));
+    const std::size_t times = 1 + parts * others / (stray_share * points.size());
     for (std::size_t n = 0; n < times; ++n) {
-      for (const Point3d& corner : corners) spheres.push_back({corner, 0});
+      for (const Point3d& point : points) spheres.push_back({point, 0});
     }
   }
 }
@@ -319,7 +341,7 @@ std::vector<VisibleSphere> visible_spheres(const ParticleSet& particles,
     add_isosurfaces(particles, sources[f], fields[f], f, values_at, random, spheres);
   }
   add_geometry(particles, geometry, random, spheres);
-  add_corners(sources, fields, spheres);
+  add_grids(sources, fields, spheres);
   // Nothing is drawn: the place where something could be.
   if (const Bounds3d box = particles.bounds(); spheres.empty() && !box.empty()) {
     spheres = {{box.min, 0}, {box.max, 0}};

@@ -20,6 +20,10 @@ namespace motes {
 /// (Cordero et al. 2008), angstrom.
 enum class ElementRadius { van_der_waals, covalent };
 
+/// The names that scenes give them.
+const std::vector<std::string>& element_radius_names();
+std::optional<ElementRadius> element_radius_from_name(std::string_view name);
+
 /// What colours go by: the elements' customary ones, a colour for each species, or, of a particle
 /// that a field has, what the transfer function of the first that has it gives at its centre.
 enum class ColorBy { element, species, field };

@@ -26,8 +26,7 @@ decltype(Geometry::radius) read_radius(const Value& value, Geometry::Type type) 
                               "name of a property";
   if (value.raw().is_string() && !sticks) {
     std::string name = value.text(what);
-    if (name == "van_der_waals") return ElementRadius::van_der_waals;
-    if (name == "covalent") return ElementRadius::covalent;
+    if (const auto table = element_radius_from_name(name)) return *table;
     return name;
   }
   if (!value.raw().is_number()) value.expected(what);

@@ -38,7 +38,7 @@ std::vector<float> radii_of(const ParticleSet& particles, const Geometry& item,
   if (const double* number = std::get_if<double>(&item.radius)) {
     std::fill(radii.begin(), radii.end(), static_cast<float>(*number));
   } else if (const auto* name = std::get_if<std::string>(&item.radius)) {
-    const Property& property = property_named(particles, *name);
+    const Property& property = property_named(particles, *name, element_radius_names());
     std::transform(index.begin(), index.end(), radii.begin(),
                    [&](std::uint32_t i) { return property.values[i]; });
   } else {
@@ -51,10 +51,26 @@ std::vector<float> radii_of(const ParticleSet& particles, const Geometry& item,
   return radii;
 }
 
+/// All particles' values of what a colour goes by: a property, or a coordinate unless a property
+/// has its name.
+std::vector<float> color_values(const ParticleSet& particles, const std::string& name) {
+  static const std::vector<std::string> coordinates{"x", "y", "z"};
+  const auto at = std::find(coordinates.begin(), coordinates.end(), name);
+  if (particles.find_property(name) != nullptr || at == coordinates.end()) {
+    return property_named(particles, name, coordinates).values;
+  }
+  const auto axis = static_cast<int>(at - coordinates.begin());
+  std::vector<float> values(particles.size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    values[i] = static_cast<float>(particles.position(i)[axis]);
+  }
+  return values;
+}
+
 std::vector<std::uint32_t> colors_by_property(const ParticleSet& particles,
                                               const ColorByProperty& color,
                                               const std::vector<std::uint32_t>& index) {
-  const std::vector<float>& values = property_named(particles, color.property).values;
+  const std::vector<float> values = color_values(particles, color.property);
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (const std::uint32_t i : index) {
     if (!std::isfinite(values[i])) continue;

@@ -174,9 +174,14 @@ void expand_grid_field(const Field& field, std::size_t k, const std::vector<Load
   }
   auto number = static_cast<std::size_t>(
       std::count_if(out.begin(), out.end(), [](const Field& f) { return f.grid.has_value(); }));
+  bool signed_shown = false;
   for (const std::string& name : names) {
     Field one = field;
     one.grid->array = name;
+    if (names.size() > 1 && signs_of(find_grid(*one.grid, grids)->values) == Signs::both) {
+      one.visible = field.visible && !signed_shown;
+      signed_shown = true;
+    }
     if (field.fitted_isosurfaces) {
       one.isosurfaces = fit_isosurfaces(*find_grid(*one.grid, grids), colors_of_grid(number));
     }

@@ -23,7 +23,9 @@ struct Selection {
 /// properties or a bad expression, naming what there is.
 std::vector<std::uint32_t> select_particles(const ParticleSet& particles, const Selection& select);
 
-/// The property of that name. Throws Error for an unknown one, naming the nearest.
-const Property& property_named(const ParticleSet& particles, const std::string& name);
+/// The property of that name. Throws Error for an unknown one, naming the nearest or what there is:
+/// the properties and `others`, names that would do in its place.
+const Property& property_named(const ParticleSet& particles, const std::string& name,
+                               const std::vector<std::string>& others = {});
 
 }  // namespace motes

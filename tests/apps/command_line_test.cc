@@ -53,6 +53,8 @@ TEST_F(CommandLine, AWrongCommandLineIsStatus2) {
                                 "--eye 1,2,3,4",
                                 "--eye 1,2,nan",
                                 "--up a,b,c",
+                                "--up 0,0,0",
+                                "--clip-plane 0,0,0,1",
                                 "--fov 0",
                                 "--fov 180",
                                 "--fov x",
@@ -277,12 +279,12 @@ TEST_F(CommandLine, LightsAddUp) {
   }
   EXPECT_GT(brightest, 0.05);
   EXPECT_EQ(with("--light-direction 3,1,1 --light-angle 0"), side);  // (a volume has no shadows)
-  const std::string expected = "--light: expected a direction such as 1,2,1.5 or headlight";
-  for (const std::string bad : {"1,2", "1,2,3,4,5", "headlights", "headlight,x", "1,2,3,-1",
-                                "1,2,3,", "headlight,", "headlight,inf", "headlight,1e39", "''"}) {
+  const std::string expected = "--light: expected a direction such as 1,2,1.5, not 0,0,0, or";
+  for (const std::string bad :
+       {"1,2", "1,2,3,4,5", "headlights", "headlight,x", "1,2,3,-1", "1,2,3,", "headlight,",
+        "headlight,inf", "headlight,1e39", "''", "0,0,0", "0,0,0,1"}) {
     EXPECT_THAT(failure("render p.xyz -o a.npy --light " + bad, 2), HasSubstr(expected)) << bad;
   }
-  EXPECT_THAT(failure("render p.xyz -o a.npy --light 0,0,0", 1), HasSubstr("zero"));
   EXPECT_THAT(failure("render p.xyz -o a.npy --light 1,2,3 --no-lighting", 2),
               HasSubstr("excludes"));
   EXPECT_THAT(failure("render p.xyz -o a.npy --light-angle 91", 2), HasSubstr("0 to 90"));
@@ -294,7 +296,7 @@ TEST_F(CommandLine, LightsAddUp) {
   EXPECT_EQ(pixels("dark.npy"), side);
   std::string nine;
   for (int i = 0; i < 9; ++i) nine += " --light headlight";
-  EXPECT_THAT(failure("render p.xyz -o a.npy" + nine, 1), HasSubstr("at most 8 lights, found 9"));
+  EXPECT_THAT(failure("render p.xyz -o a.npy" + nine, 2), HasSubstr("at most 8 lights, found '9'"));
 }
 
 TEST_F(CommandLine, ALightFromASideThrowsShadows) {
@@ -308,7 +310,8 @@ TEST_F(CommandLine, ALightFromASideThrowsShadows) {
             0.95 * std::accumulate(front.begin(), front.end(), 0.0));
   succeed("render b.json -o c.npy");
   EXPECT_EQ(pixels("c.npy"), above);
-  EXPECT_THAT(failure("render p.xyz -o a.png --light-direction 0,0,0", 1), HasSubstr("zero"));
+  EXPECT_THAT(failure("render p.xyz -o a.png --light-direction 0,0,0", 2),
+              HasSubstr("not all of them 0, found '0,0,0'"));
   EXPECT_THAT(failure("view nope.xyz", 1), HasSubstr("nope.xyz: there is no such file"));
 }
 
@@ -337,9 +340,6 @@ TEST_F(CommandLine, MistakesOfOptionsThatTheDataShowNameTheOption) {
   const std::string start = "motes: error: ";
   EXPECT_THAT(message("--eye 0,9,0 --target 0,0,0 --up 0,1,0"),
               StartsWith(start + "--up: is parallel"));
-  for (const std::string others : {"", " --eye 0,9,0", " --eye 0,9,0 --target 0,0,0"}) {
-    EXPECT_EQ(message("--up 0,0,0" + others), start + "--up: a direction must not be zero\n");
-  }
   EXPECT_THAT(message("--radius q"), StartsWith(start + "--radius: unknown property 'q'"));
   EXPECT_THAT(message("--step-size 1e-12"), StartsWith(start + "--step-size: 1e-12 takes "));
   EXPECT_THAT(message("--eye 0,0,1e30"), StartsWith(start + "--eye: is 1e+30 away"));

@@ -112,10 +112,13 @@ TEST(Cube, ChargesAreAPropertyWhereTheySaySomething) {
 }
 
 TEST(Cube, OfOnePeriodIsPeriodic) {
-  const std::string text = "PWScf\nContains the selected quantity on a FFT grid\n" +
-                           cube().substr(std::string("water\nof sorts\n").size()) + values();
-  EXPECT_TRUE(grids_of("a.cube", text)[0].periodic);
-  EXPECT_TRUE(read_text("a.cube", text).cell->periodic[2]);
+  for (const char* const titles : {"density\nContains the selected quantity on a FFT grid\n",
+                                   " Cubefile created from PWScf calculation\nin angstrom\n"}) {
+    const std::string text =
+        titles + cube().substr(std::string("water\nof sorts\n").size()) + values();
+    EXPECT_TRUE(grids_of("a.cube", text)[0].periodic) << titles;
+    EXPECT_TRUE(read_text("a.cube", text).cell->periodic[2]) << titles;
+  }
 }
 
 TEST(Cube, IsKnownByItsContent) {

@@ -174,14 +174,20 @@ INSTANTIATE_TEST_SUITE_P(
                 "CHGCAR: samples, 9000000000000000000 x"},
         BadText{"FewValues", structure + "2 2 3\n" + values,
                 "CHGCAR:16: the file ends after 6 of 12 values"},
-        BadText{"ManyValues", structure + grid + "0 1 2 3 4\n5 6\n",
-                "CHGCAR:15: expected the end of the line after 6 values, found '6'"},
-        BadText{"ManyLines", structure + grid + values + "1 2 3\n",
-                "CHGCAR:16: expected the grid's 2 1 3 again behind these numbers"},
+        BadText{
+            "ManyValues", structure + grid + "0 1 2 3 4\n5 6\n",
+            "CHGCAR:15: expected the end of the line after 6 values (2 x 1 x 3 by line 13), found "
+            "'6'"},
+        BadText{"ManyLines", structure + grid + values + "1 2 3.5\n",
+                "CHGCAR:16: expected the grid's 2 1 3 again behind the numbers after 6 values (2 x "
+                "1 x 3 by line 13)"},
+        BadText{"SmallGrid", structure + "1 1 3\n1 2 3\n4 5 6 7\n",
+                "CHGCAR:15: expected 3 numbers of atoms or the end of the file after 3 values (1 x "
+                "1 x 3 by line 13), found '7' behind 3 of them"},
         BadText{"Junk", structure + grid + values + "junk\n",
                 "CHGCAR:16: expected augmentation occupancies, the grid's 2 1 3 again"},
         BadText{"OtherGrid", structure + grid + values + "3 1 2\n" + values,
-                "CHGCAR:17: expected augmentation occupancies"},
+                "CHGCAR:16: expected the grid's 2 1 3 again, found '3 1 2'"},
         BadText{"Stars", structure + grid + "1 2 3 4 5\n*****\n",
                 "CHGCAR:15: expected a number, found '*****'"},
         BadText{"ThreeBlocks", structure + grid + values + grid + values + grid + values,

@@ -296,7 +296,7 @@ INSTANTIATE_TEST_SUITE_P(
             "array 'f': holds 805306368 bytes; expected 48 for 12 samples of 4 bytes, 2 x 3 x 2 "
             "points by the Extent; with byte_order=\"BigEndian\" it holds these"},
         BadText{"Cut", appended_bytes(header_numbers({48}, false, 4), false),
-                "array 'f': ends after 29 of 52 bytes"},
+                "array 'f': ends after 4 of 52 bytes"},
         BadText{"Junk", inline_file({.base64 = true}, "Float32", "") + "x",
                 "a.vti:9: is no good XML: junk"},
         BadText{"BadBase64",
@@ -310,7 +310,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadText{"EmptyBlocks", blocks({4e9, 0, 48, 1, 1}, zeros), "array 'f': has no blocks"},
         BadText{"ManySmallBlocks", blocks({48, 1, 0}, zeros),
                 "array 'f': has blocks of 1 bytes; expected whole values of 4"},
-        BadText{"NoTable", blocks({12, 4, 0}, ""), "array 'f': ends after 37 of 60 bytes"},
+        BadText{"NoTable", blocks({12, 4, 0}, ""), "array 'f': ends after 12 of 60 bytes"},
         BadText{"LongBlock", blocks({1, 48, 0, 4e9}, zeros),
                 "array 'f': ends before block 1 of 1 is whole"},
         BadText{"BadBlock", blocks({1, 48, 0, 20}, std::string(20, 'x')),
@@ -320,6 +320,31 @@ INSTANTIATE_TEST_SUITE_P(
             blocks({1, 48, 0, static_cast<double>(zeros.size())}, deflated(std::string(47, '\0'))),
             "array 'f': block 1 of 1 cannot be decompressed"}),
     [](const auto& bad) { return bad.param.name; });
+
+// A size of 8 bytes reads the same as one of 4, whose values then begin 4 bytes early, and the
+// other way round where the first value is 0.
+TEST(Vti, ToldTheWrongHeaderTypeIsRefused) {
+  const auto replaced = [](std::string text, int header_bytes) {
+    const std::string right = header_bytes == 8 ? "UInt64" : "UInt32";
+    return text.replace(text.find(right), 6, header_bytes == 8 ? "UInt32" : "UInt64");
+  };
+  const std::string bytes = scalar_bytes<float>(numbers, false);
+  for (const int header_bytes : {4, 8}) {
+    for (const bool base64 : {false, true}) {
+      const Storage storage{.header_bytes = header_bytes, .base64 = base64};
+      const std::string message = fmt::format(
+          "array 'f': does not end behind its 48 bytes; with header_type=\"UInt{}\" it would",
+          8 * header_bytes);
+      const std::string appended = appended_file(storage, "Float32", bytes);
+      EXPECT_EQ(grid_error("a.vti", appended), "");
+      EXPECT_THAT(grid_error("a.vti", replaced(appended, header_bytes)), HasSubstr(message));
+      if (!base64) continue;
+      const std::string inside = inline_file(storage, "Float32", bytes);
+      EXPECT_EQ(grid_error("a.vti", inside), "");
+      EXPECT_THAT(grid_error("a.vti", replaced(inside, header_bytes)), HasSubstr(message));
+    }
+  }
+}
 
 // Values in another order of bytes than the sizes in front of them.
 TEST(Vti, WarnsOfValuesInTheOtherOrderOfBytes) {

@@ -108,6 +108,7 @@ void make_case(int seed, Case& c) {
 struct Truth {
   std::uint32_t level;
   double depth;
+  bool cap = false;
 };
 
 class BruteForce {
@@ -169,6 +170,46 @@ class BruteForce {
     }
     return found;
   }
+  /// Where the ray enters or leaves the hull within what a level encloses.
+  std::vector<Truth> caps(std::uint32_t ray) const {
+    const double step = case_.frame.planes.step, begin = case_.frame.planes.depth(0);
+    std::vector<Truth> found;
+    bool before = at(ray, begin).field.has_value();
+    for (int i = 1; i <= case_.frame.last_plane; ++i) {
+      double low = begin + (i - 1) * step, high = low + step;
+      const bool here = at(ray, high).field.has_value();
+      if (here != before) {
+        for (int k = 0; k < 40; ++k) {
+          const double middle = 0.5 * (low + high);
+          (at(ray, middle).field.has_value() == before ? low : high) = middle;
+        }
+        const double value = at(ray, before ? low : high).field->value;
+        for (const IsosurfaceLevel& level : case_.frame.fields[0].levels) {
+          const double v = value_of(level);
+          if (v > 0 ? value > v + doubt : value < v - doubt)
+            found.push_back({level.number, low, true});
+        }
+      }
+      before = here;
+    }
+    return found;
+  }
+  static constexpr double doubt = 1e-3;  // of the field on a face, where its slope is not looked at
+
+  /// The normal of the face that a place lies on, outwards.
+  Vector3d face_normal(std::uint32_t ray, double depth) const {
+    const Point3d p = point(ray, depth);
+    const auto faces = field_.faces();
+    const auto room = [&](const ClipPlane& face) {
+      return std::abs(face.distance / length(face.normal) -
+                      dot(normalize(face.normal), Vector3d(p)));
+    };
+    return normalize(
+        std::min_element(faces.begin(), faces.end(), [&](const ClipPlane& a, const ClipPlane& b) {
+          return room(a) < room(b);
+        })->normal);
+  }
+
   double value_of(const IsosurfaceLevel& level) const {
     return level.value / case_.kernels.fields[0].value_scale;
   }
@@ -186,8 +227,12 @@ TEST_P(GridIsosurfaces, AreCrossedWhereTheReferencesFieldCrosses) {
   const BruteForce truth(c);
   const double step = c.frame.planes.step;
   std::vector<std::vector<Truth>> expected;
-  for (std::uint32_t ray = 0; ray < c.rays.size(); ++ray) expected.push_back(truth.crossings(ray));
-  std::size_t crossings = 0, turned = 0;
+  std::vector<std::vector<Truth>> caps;
+  for (std::uint32_t ray = 0; ray < c.rays.size(); ++ray) {
+    expected.push_back(truth.crossings(ray));
+    caps.push_back(truth.caps(ray));
+  }
+  std::size_t crossings = 0, turned = 0, num_caps = 0;
   for (const std::string& target : instruction_sets()) {
     force_instruction_set(target);
     std::vector<IsosurfaceHit> hits;
@@ -196,11 +241,19 @@ TEST_P(GridIsosurfaces, AreCrossedWhereTheReferencesFieldCrosses) {
     for (std::uint32_t ray = 0; ray < c.rays.size(); ++ray) {
       const auto& truths = expected[ray];
       const std::string where = fmt::format("{}, {}, ray {}", c.description, target, ray);
-      std::vector<bool> seen(truths.size());
+      std::vector<bool> seen(truths.size()), cap_seen(caps[ray].size());
       double last = std::numeric_limits<double>::infinity();
       for (; hit != hits.end() && hit->ray == ray; ++hit) {
         if (hit->opacity >= 1) last = hit->depth;
         const auto at = truth.at(ray, hit->depth);
+        for (std::size_t i = 0; i < caps[ray].size(); ++i) {
+          const Truth& cap = caps[ray][i];
+          if (cap.level != hit->level || std::abs(cap.depth - hit->depth) > 1e-4 * step) continue;
+          const Vector3d along = truth.point(ray, 1) - truth.point(ray, 0);
+          Vector3d normal = truth.face_normal(ray, cap.depth);
+          if (dot(normal, along) > 0) normal = -normal;
+          cap_seen[i] = cap_seen[i] || length(normal - Vector3d(hit->normal)) < 1e-5;
+        }
         // On a face: whether the crossing is within is a matter of rounding.
         if (at.face_distance * c.kernels.length_scale < 2e-3 * step) continue;
         ASSERT_TRUE(at.field) << where;
@@ -242,11 +295,17 @@ TEST_P(GridIsosurfaces, AreCrossedWhereTheReferencesFieldCrosses) {
         if (pair || face * c.kernels.length_scale < 2e-3 * step) continue;
         EXPECT_TRUE(seen[i]) << where << " misses " << truths[i].depth;
       }
+      for (std::size_t i = 0; i < caps[ray].size(); ++i) {
+        if (caps[ray][i].depth > last + 1e-3 * step) continue;
+        EXPECT_TRUE(cap_seen[i]) << where << " misses the cap at " << caps[ray][i].depth;
+        ++num_caps;
+      }
     }
     EXPECT_EQ(hit, hits.end());
   }
   force_instruction_set("");
   EXPECT_GT(crossings, 60 * instruction_sets().size());
+  EXPECT_GT(num_caps, 10 * instruction_sets().size());
   if (c.reconstruction == Reconstruction::trilinear) {
     EXPECT_GT(turned, 0u);
   }
@@ -282,8 +341,12 @@ TEST(GridIsosurface, HidesTheLightOfWhatIsWithin) {
   context.box = {{-side, -side, -side}, {side, side, side}};
   ImagePlane plane;
   const auto frame = make_isosurfaces(scene, context, c.fields, plane, {}, {}).frame;
+  auto wide = frame;  // what else is drawn makes the box larger
+  wide.box = {Point3d{} + 2.0 * Vector3d(frame.box.min), Point3d{} + 2.0 * Vector3d(frame.box.max)};
   const Point3d start = Point3d{} + scale * (Point3d{0.2, 0.1, -0.6} - c.kernels.origin);
   const std::vector<Vector3f> all = {{0, 0, 1}, {0, 0, -1}, {1, 0, 0}, {0.6F, 0, 0.8F}};
+  // From beside the field: what the level encloses is met at its face.
+  const Point3d beside = Point3d{} + scale * (Point3d{-5, 0.1, 2} - c.kernels.origin);
   for (const std::string& target : instruction_sets()) {
     force_instruction_set(target);
     std::vector<Vector3f> far = all, near = all;
@@ -293,6 +356,10 @@ TEST(GridIsosurface, HidesTheLightOfWhatIsWithin) {
     EXPECT_EQ(far[1].x, 1);
     prune(frame, start, {0, 0, 1}, 1.5 * scale, near);
     EXPECT_EQ(near.size(), 4u) << target;
+    std::vector<Vector3f> capped = {{1, 0, 0}, {-1, 0, 0}, {0.8F, 0, -0.6F}};
+    prune(wide, beside, {-1, 0, 0}, 8 * scale, capped);
+    ASSERT_EQ(capped.size(), 1u) << target;
+    EXPECT_EQ(capped[0].x, -1);
   }
   force_instruction_set("");
 }

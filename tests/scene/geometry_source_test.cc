@@ -66,6 +66,23 @@ TEST(GeometrySource, TakesPropertiesAndLeavesOutWhatIsNone) {
   EXPECT_THAT(warnings.lines(), ElementsAre(HasSubstr("1 of 4 particles are not drawn")));
 }
 
+TEST(GeometrySource, ColoursByCoordinatesUnlessAPropertyHasTheName) {
+  ParticleSet particles;
+  particles.origin = {0, 0, 100};
+  particles.x = particles.y = {0, 0, 0};
+  particles.z = {0, 1, 2};
+  Geometry balls;
+  balls.radius = 1.0;
+  balls.color = ColorByProperty{"z", "grey", {{101, 102}}};
+  Warnings warnings;
+  const auto colors = make_geometry_source(particles, {balls}, warnings).srgb;
+  EXPECT_EQ(colors[0], colors[1]);
+  EXPECT_LT(colors[1], colors[2]);
+  particles.properties = {{"z", {102, 101, 101}}};
+  const auto by_property = make_geometry_source(particles, {balls}, warnings).srgb;
+  EXPECT_THAT(by_property, ElementsAre(colors[2], colors[1], colors[1]));
+}
+
 TEST(GeometrySource, LeavesBondsByDistanceToTheTreeAndDrawsJoints) {
   Warnings warnings;
   const GeometrySource source = source_of(

@@ -65,6 +65,25 @@ TEST(ExpandFields, FitsIsosurfacesOfGrids) {
   }
 }
 
+// Four colours in one place tell nothing.
+TEST(ExpandFields, ShowsOneOfSeveralGridsOfBothSigns) {
+  const std::vector<LoadedGrid> grids{loaded("density", {0, 4, 0}), loaded("homo", {-3, 0, 3}),
+                                      loaded("lumo", {-1, 0, 1})};
+  const auto visible = [&](const Scene& scene) {
+    std::vector<bool> all;
+    for (const Field& field : expand_fields(scene, {}, grids)) all.push_back(field.visible);
+    return all;
+  };
+  EXPECT_THAT(visible(scene_of_grids()), testing::ElementsAre(true, true, false));
+  Scene hidden = scene_of_grids();
+  hidden.fields[0].visible = false;
+  EXPECT_THAT(visible(hidden), testing::ElementsAre(false, false, false));
+  Scene named = scene_of_grids();
+  named.fields[0].grid->array = "homo";
+  named.fields.emplace_back().grid.emplace().array = "lumo";
+  EXPECT_THAT(visible(named), testing::ElementsAre(true, true));
+}
+
 TEST(ExpandFields, FitsNoIsosurfaceThatASignDoesNotReach) {
   Scene scene = scene_of_grids();
   scene.fields[0].fitted_isosurfaces = true;

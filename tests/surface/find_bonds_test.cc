@@ -70,6 +70,7 @@ Expected brute_force_bonds(const ParticleSet& particles) {
     for (std::uint32_t j = i; j < particles.size(); ++j) {
       const Element *const a = elements[i], *const b = elements[j];
       if (a == nullptr || b == nullptr || (a->number == 1 && b->number == 1)) continue;
+      if (is_metal(*a) && is_metal(*b)) continue;
       const double most = double(a->covalent_radius) + double(b->covalent_radius) + 0.45;
       const auto take = [&](const Vector3d& v) {
         const double d = length(v);
@@ -198,7 +199,7 @@ TEST(FindBonds, TakesBondsAcrossTheFacesOfACell) {
   EXPECT_THAT(bonds_of(particles), IsEmpty());
 }
 
-// Silicon has four neighbours, iron in its conventional cell eight, a chain one on each side.
+// Silicon has four neighbours, a centred cubic cell eight, a chain one on each side.
 TEST(FindBonds, TakesAllImagesInTheCellsOfCrystals) {
   const double a = 5.431;
   ParticleSet silicon = atoms_at({{"Si", {0, 0, 0}}, {"Si", {a / 4, a / 4, a / 4}}});
@@ -207,11 +208,13 @@ TEST(FindBonds, TakesAllImagesInTheCellsOfCrystals) {
            {Vector3d{0, a / 2, a / 2}, Vector3d{a / 2, 0, a / 2}, Vector3d{a / 2, a / 2, 0}},
            {true, true, true}};
   EXPECT_EQ(bonds_of(silicon).size(), 4U);
-  ParticleSet iron = atoms_at({{"Fe", {0, 0, 0}}, {"Fe", {1.43, 1.43, 1.43}}});
-  iron.cell = Cell{
+  ParticleSet centred = atoms_at({{"Kr", {0, 0, 0}}, {"Kr", {1.43, 1.43, 1.43}}});
+  centred.cell = Cell{
       {}, {Vector3d{2.86, 0, 0}, Vector3d{0, 2.86, 0}, Vector3d{0, 0, 2.86}}, {true, true, true}};
-  // 2.48 between the two; 2.86 between images of each, three ways: 1.32 + 1.32 + 0.45 = 3.09.
-  EXPECT_EQ(bonds_of(iron).size(), 8U + 3U + 3U);
+  // 2.48 between the two; 2.86 between images of each, three ways: 1.16 + 1.16 + 0.45 = 2.77.
+  EXPECT_EQ(bonds_of(centred).size(), 8U);
+  for (auto& vector : centred.cell->vectors) vector = 0.96 * vector;
+  EXPECT_EQ(bonds_of(centred).size(), 8U + 3U + 3U);
   ParticleSet chain = atoms_at({{"C", {0.2, 5, 5}}, {"C", {1.7, 5, 5}}});
   chain.cell =
       Cell{{}, {Vector3d{3, 0, 0}, Vector3d{0, 10, 0}, Vector3d{0, 0, 10}}, {true, true, true}};
@@ -226,6 +229,11 @@ TEST(FindBonds, KeepsToItsRule) {
   EXPECT_THAT(bonds_of(atoms_at({{"O", {0, 0, 0}}, {"C", {1.88, 0, 0}}})), IsEmpty());
   EXPECT_THAT(bonds_of(atoms_at({{"O", {0, 0, 0}}, {"O", {0.39, 0, 0}}})), IsEmpty());
   EXPECT_THAT(bonds_of(atoms_at({{"O", {0, 0, 0}}, {"clay", {1, 0, 0}}})), IsEmpty());
+  // Metals are bonded to others, not to each other.
+  EXPECT_THAT(bonds_of(atoms_at({{"Fe", {0, 0, 0}}, {"Cu", {2.5, 0, 0}}})), IsEmpty());
+  EXPECT_THAT(bonds_of(atoms_at({{"Fe", {0, 0, 0}}, {"O", {1.9, 0, 0}}})), ElementsAre(Bond{0, 1}));
+  EXPECT_THAT(bonds_of(atoms_at({{"Ge", {0, 0, 0}}, {"Ge", {2.4, 0, 0}}})),
+              ElementsAre(Bond{0, 1}));
 }
 
 TEST(FindBonds, TakesWhatHasNoAtoms) {
