@@ -313,6 +313,49 @@ TEST_P(GridIsosurfaces, AreCrossedWhereTheReferencesFieldCrosses) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, GridIsosurfaces, testing::Range(0, 6));
 
+// No value of the grid is the level's: there is only the face to be met.
+TEST(GridIsosurface, IsABoxWhereTheLevelEnclosesAll) {
+  auto grid = std::make_shared<Grid>();
+  grid->name = "full";
+  grid->dims = {9, 9, 9};
+  grid->origin = {-4, -4, -4};
+  grid->steps = {Vector3d{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  for (const float sign : {1.0F, -1.0F}) {
+    grid->values.assign(729, 2 * sign);
+    Case c;
+    FieldSource source;
+    source.grid = c.grid = grid;
+    c.kernels = build_kernel_set({}, {source});
+    c.fields = make_grid_fields({source});
+    set_units(c.fields, c.kernels);
+    const double scale = c.kernels.length_scale;
+    ResolvedScene scene;
+    scene.isosurfaces = {{0, static_cast<double>(sign), 1, {{1, 1, 1}}}};
+    FrameContext context;
+    context.kernels = &c.kernels;
+    Camera camera;
+    camera.eye = {0, 0, 20};
+    camera.target = {};
+    context.view = {
+        camera_axes(camera), Point3d{} + scale * (camera.eye - c.kernels.origin), {0, 0.5 * scale}};
+    const double side = 4 * scale;
+    context.box = {{-side, -side, -side}, {side, side, side}};
+    ImagePlane plane;
+    const auto frame = make_isosurfaces(scene, context, c.fields, plane, {}, {}).frame;
+    for (const std::string& target : instruction_sets()) {
+      force_instruction_set(target);
+      std::vector<IsosurfaceHit> hits;
+      trace_isosurfaces(frame, {-0.2, 0.2, 0.025, -0.025, 0, 0, 17, 17}, hits);
+      ASSERT_EQ(hits.size(), 17U * 17U) << target;
+      for (const IsosurfaceHit& hit : hits) {
+        EXPECT_NEAR(hit.depth, 16 * scale, 1e-4 * scale) << target;
+        EXPECT_NEAR(hit.normal.z, 1, 1e-6) << target;
+      }
+    }
+    force_instruction_set("");
+  }
+}
+
 TEST(GridIsosurface, HidesTheLightOfWhatIsWithin) {
   // A field that is the height along z above the grid's middle: level 1 is a plane.
   auto grid = std::make_shared<Grid>();
