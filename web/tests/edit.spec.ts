@@ -116,7 +116,7 @@ test("changes background and light", async ({ screen, view }) => {
   expect((await screen.picture()).equals(one)).toBe(false);
   await screen.change(() => page.getByText("at the camera").last().click());
   expect(await lights()).toEqual([{}, { intensity: 0.5 }]);
-  await screen.change(() => page.getByRole("button", { name: "Remove this light" }).last().click());
+  await screen.change(() => page.getByRole("button", { name: "Remove light 2" }).click());
   expect((await screen.picture()).equals(one)).toBe(true);
   await screen.change(() => page.getByRole("switch", { name: "Lighting" }).click());
 });

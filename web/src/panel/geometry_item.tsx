@@ -26,7 +26,8 @@ function ColorRow({ item, change }: { item: Geometry; change: Change }) {
     : typeof color === "string" && named.includes(color)
       ? color
       : "one";
-  const properties = data.value?.properties.map(({ name }) => name) ?? [];
+  const ofData = data.value?.properties.map(({ name }) => name) ?? [];
+  const properties = [...new Set(["x", "y", "z", ...ofData])];
   const choices = [
     { value: "element", label: "by element" },
     { value: "species", label: "by species" },

@@ -69,7 +69,7 @@ export function LightItem({ light, index }: { light: LightSource; index: number 
     <li class="item">
       <div class="item-head">
         <Segments
-          label="Where the light is"
+          label={`Where light ${index + 1} is`}
           value={direction ? "world" : "camera"}
           choices={[
             { value: "camera", label: "at the camera" },
@@ -77,7 +77,7 @@ export function LightItem({ light, index }: { light: LightSource; index: number 
           ]}
           onChange={(place) => (place === "camera" ? change({ direction: undefined }) : fromHere())}
         />
-        <IconButton icon="trash" label="Remove this light" onClick={() => change(null)} />
+        <IconButton icon="trash" label={`Remove light ${index + 1}`} onClick={() => change(null)} />
       </div>
       {direction && (
         <>
