@@ -11,8 +11,15 @@
 namespace motes {
 namespace {
 
-/// One tile on its way. Opaque hits are lit as balls and sticks are; what light reaches those of
-/// translucent levels is not asked.
+/// Spots of some levels, and the light of those of the tile's pixels, evened out. The points'
+/// `stick` is the level.
+struct LitSpots {
+  Spots spots;
+  std::vector<Light> lights;
+  std::vector<std::size_t> begin;  ///< of each pixel's lights
+};
+
+/// One tile on its way.
 class TileShader {
  public:
   TileShader(const ShadedIsosurfaces& isosurfaces, const Tile& tile)
@@ -21,7 +28,20 @@ class TileShader {
         n_(light_.plane.samples),
         margin_(has_spots(light_.shading) ? pattern_side / 2 : 0),
         tile_(tile),
-        grid_(rays_of(light_.plane, tile, margin_)) {}
+        grid_(rays_of(light_.plane, tile, margin_)) {
+    // Where nothing is opaque nothing hides light.
+    std::size_t num_lists = 1;
+    bool any_opaque = light_.surface != nullptr;
+    for (const FieldIsosurfaces& field : isosurfaces.frame.fields) {
+      for (const IsosurfaceLevel& level : field.levels) {
+        const bool opaque = level.opacity >= 1;
+        any_opaque = any_opaque || opaque;
+        if (list_of_level_.size() <= level.number) list_of_level_.resize(level.number + 1);
+        list_of_level_[level.number] = opaque ? 0 : num_lists++;
+      }
+    }
+    lit_.resize(any_opaque ? num_lists : 0);
+  }
 
   void run(std::vector<IsosurfaceHit>& out) {
     trace_isosurfaces(isosurfaces_.frame, grid_, hits_);
@@ -67,26 +87,37 @@ class TileShader {
     return {ray.origin + hit.depth * ray.direction, no_particle, hit.level};
   }
 
-  /// A spot for each piece of an opaque level that a pixel shows.
+  /// A spot for each piece of a level that a pixel shows.
   void light_spots() {
-    spots_.reset(tile_.width + 2 * margin_);
+    for (LitSpots& lit : lit_) lit.spots.reset(tile_.width + 2 * margin_);
     for (int y = 0; y < tile_.height + 2 * margin_; ++y) {
       for (int x = 0; x < tile_.width + 2 * margin_; ++x) {
         const int number = pattern_number(tile_.x + x - margin_, tile_.y + y - margin_);
-        for (int i = 0; i < n_ * n_; ++i) {
-          const auto hits = hits_of(n_ * x + i % n_, n_ * y + i / n_);
-          if (hits.empty() || hits.back().opacity < 1) continue;
-          spots_.add({point_of(hits.back()), Vector3d(hits.back().normal), {}}, rank_of(number, i));
+        if (!lit_.empty()) add_spots(x, y, number);
+        for (LitSpots& lit : lit_) {
+          look_for_light(light_, lit.spots.end_pixel(), number, directions_);
         }
-        look_for_light(light_, spots_.end_pixel(), number, directions_);
       }
     }
-    for (int y = 0; y < tile_.height; ++y) {
-      for (int x = 0; x < tile_.width; ++x) {
-        lights_begin_.push_back(lights_.size());
-        for (const Spot& spot : spots_.of(x + margin_, y + margin_)) {
-          lights_.push_back(spots_.even_light(x + margin_, y + margin_, spot));
+    for (LitSpots& lit : lit_) {
+      for (int y = 0; y < tile_.height; ++y) {
+        for (int x = 0; x < tile_.width; ++x) {
+          lit.begin.push_back(lit.lights.size());
+          for (const Spot& spot : lit.spots.of(x + margin_, y + margin_)) {
+            lit.lights.push_back(lit.spots.even_light(x + margin_, y + margin_, spot));
+          }
         }
+      }
+    }
+  }
+
+  /// The spots of the pixel (x, y) of the tile and its margin, which is of that number of the
+  /// pattern.
+  void add_spots(int x, int y, int number) {
+    for (int i = 0; i < n_ * n_; ++i) {
+      for (const IsosurfaceHit& hit : hits_of(n_ * x + i % n_, n_ * y + i / n_)) {
+        lit_[list_of_level_[hit.level]].spots.add({point_of(hit), Vector3d(hit.normal), {}},
+                                                  rank_of(number, i));
       }
     }
   }
@@ -94,21 +125,22 @@ class TileShader {
   /// Lights a hit of the tile's pixel (x, y).
   void shade(int x, int y, IsosurfaceHit& hit) {
     Light light;
-    if (hit.opacity >= 1 && margin_ != 0) {
+    const Vector3d normal(hit.normal);
+    if (!lit_.empty() && margin_ != 0) {
+      const LitSpots& lit = lit_[list_of_level_[hit.level]];
       const auto pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(tile_.width) +
                          static_cast<std::size_t>(x);
-      const auto spots = spots_.of(x + margin_, y + margin_);
+      const auto spots = lit.spots.of(x + margin_, y + margin_);
       const Point3d place = point_of(hit).place;
       double nearest = std::numeric_limits<double>::infinity();
       for (std::size_t s = 0; s < spots.size(); ++s) {
         const double distance = length(spots[s].point.place - place);
         if (spots[s].point.stick != hit.level || !(distance < nearest)) continue;
         nearest = distance;
-        light = lights_[lights_begin_[pixel] + s];
+        light = lit.lights[lit.begin[pixel] + s];
       }
     }
-    const Vector3d normal(hit.normal);
-    if (hit.opacity >= 1 && has_hard_shadows(light_.shading)) {
+    if (!lit_.empty() && has_hard_shadows(light_.shading)) {
       add_hard_shadows(light_, point_of(hit), normal, light, directions_);
     }
     hit.color =
@@ -121,10 +153,11 @@ class TileShader {
   Tile tile_;
   RayGrid grid_;
   std::vector<IsosurfaceHit> hits_;
-  std::vector<std::size_t> begin_;         ///< of each ray's hits, and the end
-  Spots spots_;                            ///< their points' `stick` is the level
-  std::vector<Light> lights_;              ///< evened out, of the spots of the tile's pixels
-  std::vector<std::size_t> lights_begin_;  ///< of each pixel
+  std::vector<std::size_t> begin_;  ///< of each ray's hits, and the end
+  /// Of the opaque levels, and of each translucent one: a pixel shows few spots of each. None where
+  /// nothing hides light.
+  std::vector<LitSpots> lit_;
+  std::vector<std::size_t> list_of_level_;  ///< by its number: of lit_
   std::vector<Vector3f> directions_;
 };
 

@@ -103,6 +103,40 @@ TEST(Isosurface, HidesTheLightOfWhatIsWithinButForWhatIsCutAway) {
   }
 }
 
+// The far side of a translucent shell, seen beside a ball in its middle, which hides the part
+// (r/R)^2 of the light from there and all of a lamp behind it.
+TEST(Isosurface, ThatIsTranslucentLacksTheLightThatSolidsHide) {
+  PlainScene s = one_kernel();
+  constexpr int size = 48;
+  s.scene.render.width = s.scene.render.height = size;
+  s.scene.transfer_functions = {{{{0, {}, 0}}}};
+  s.scene.camera.eye = {0, 0, 7};
+  s.scene.camera.orthographic_height = 6;
+  s.scene.isosurfaces = {{0, 0.5, 0.5F, {{1, 1, 1}}}};
+  Lighting& lighting = s.scene.render.lighting;
+  lighting.specular = 0;
+  const double radius = 1.2, shell = radius_at(0.5);
+  const auto beside = [&](bool with_ball) {
+    GeometrySource within = with_ball ? ball(1.2F, 0xffffff) : GeometrySource{};
+    const Framebuffer image = Renderer(s.particles, s.scene.fields, within).render(s.scene, {});
+    return image.pixel(9, size / 2)[0];  // x = -1.81
+  };
+  s.scene.render.surface = {3, 64, {}, true, 0};
+  lighting.ambient = 1;
+  lighting.diffuse = 0;
+  EXPECT_NEAR(beside(false), 0.5 + 0.25, 1e-5);
+  const double open = 1 - radius * radius / (shell * shell);
+  EXPECT_NEAR(beside(true), 0.5 + 0.25 * open, 0.25 * 0.03);
+  for (const double light_angle : {0.0, 3.0}) {
+    s.scene.render.surface = {3, 0, {}, true, light_angle};
+    lighting.ambient = 0;
+    lighting.diffuse = 1;
+    lighting.lights = {{Vector3d{1.81, 0, std::sqrt(shell * shell - 1.81 * 1.81)}}};
+    EXPECT_GT(beside(false), 0.1) << light_angle;
+    EXPECT_NEAR(beside(true), 0, light_angle > 0 ? 0.01 : 0) << light_angle;
+  }
+}
+
 TEST(Isosurface, ThatIsTranslucentTakesNoLight) {
   PlainScene s = one_kernel();
   s.scene.transfer_functions = {{{{0, {}, 0}}}};
