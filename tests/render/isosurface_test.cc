@@ -137,6 +137,29 @@ TEST(Isosurface, ThatIsTranslucentLacksTheLightThatSolidsHide) {
   }
 }
 
+// However many translucent levels there are, those that are opaque keep their rays to the light.
+TEST(Isosurface, ThatIsOpaqueIsLitTheSameWithinTranslucentOnes) {
+  // A cup around the view.
+  PlainScene s = plain_scene(
+      {{2, 0, 2}, {-2, 0, 2}, {0, 2, 2}, {0, -2, 2}, {1.3, 0, 0}, {-1.3, 0, 0}, {0, 0, -1}}, 12);
+  s.scene.fields[0].radius = {1};
+  s.scene.fields[0].kernel.support_factor = 4;
+  s.scene.step_size = 0.2;
+  s.scene.transfer_functions = {{{{0, {}, 0}}}};
+  s.scene.render.lighting = {true, 1, 0, 0, 1};
+  s.scene.render.surface = {3, 16, 20.0, true, 5};
+  s.scene.isosurfaces = {{0, 0.6, 1, {{1, 1, 1}}}};
+  const Renderer renderer(s.particles, s.scene.fields);
+  const Framebuffer alone = renderer.render(s.scene, {});
+  s.scene.render.surface.occlusion_samples = 0;
+  EXPECT_GT(compare_images(renderer.render(s.scene, {}), alone).max, 0.02) << "no light is hidden";
+  s.scene.render.surface.occlusion_samples = 16;
+  for (const double value : {0.5, 0.4, 0.3, 0.2, 0.1}) {
+    s.scene.isosurfaces.push_back({0, value, 0, {{1, 1, 1}}});
+  }
+  EXPECT_LE(compare_images(renderer.render(s.scene, {}), alone).max, 1e-5);
+}
+
 TEST(Isosurface, ThatIsTranslucentTakesNoLight) {
   PlainScene s = one_kernel();
   s.scene.transfer_functions = {{{{0, {}, 0}}}};
