@@ -104,7 +104,11 @@ std::string describe(const CLI::App& program, const CLI::ParseError& error, int 
   if (!unknown.empty()) {
     return fmt::format("unexpected argument '{}'", motes::printable(unknown));
   }
-  return motes::printable(error.what(), 400);
+  const std::string what = error.what();
+  if (const auto at = what.find(": At Most 1 required but received "); at != std::string::npos) {
+    return fmt::format("{}: given more than once; expected one value", what.substr(0, at));
+  }
+  return motes::printable(what, 400);
 }
 
 int report_parse_error(const CLI::App& program, const CLI::ParseError& error, int argc,

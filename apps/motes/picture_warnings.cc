@@ -77,7 +77,10 @@ double height_in_pixels(const DataExtent& data, const Camera& camera, int image_
 
 struct ValueRange {
   double min = 0, max = 0;
-  bool contains(double value) const { return min <= value && value <= max; }
+  /// Whether there is something beyond the level, farther from 0: that is what it encloses.
+  bool goes_beyond(double level) const {
+    return level > 0 ? max > level : min < level || level == 0;
+  }
 };
 
 /// Of a field of particles: 0, and what it is at its particles, or many of them.
@@ -128,13 +131,14 @@ bool warn_of_levels_not_reached(const Renderer& renderer, const ResolvedScene& s
     if (!is_grid && !of_particles) continue;
     const ValueRange range =
         is_grid ? range_of(*grid) : range_at_particles(kernels, isosurface.field);
-    if (range.contains(isosurface.value)) continue;
+    if (range.goes_beyond(isosurface.value)) continue;
     any = true;
     warnings.add(
         fmt::format("the field '{}' does not reach its isosurface at {:.4g}; {} from {:.4g} "
                     "to {:.4g}",
                     printable(kernels.fields[isosurface.field].name), isosurface.value,
-                    is_grid ? "its values go" : "at its particles it goes", range.min, range.max));
+                    is_grid ? "its values go" : "it goes",
+                    range.min, range.max));
   }
   return any;
 }
@@ -187,9 +191,10 @@ void warn_of_empty_picture(const Framebuffer& image, const Renderer& renderer,
     warnings.add(
         fmt::format("the {} in view are too transparent to be seen (largest opacity "
                     "{:.2g}); expected a larger extinction in the transfer function, or a range "
-                    "with the field's values in it{}",
+                    "with the field's values in it{}{}",
                     renderer.grids().empty() ? "particles" : "fields", largest,
-                    scene.isosurfaces.empty() ? "" : ", or isosurfaces of a larger opacity"));
+                    scene.isosurfaces.empty() ? "" : ", or isosurfaces of a larger opacity",
+                    scene.render.clip_planes.empty() ? "" : ", or clip planes that leave some"));
     return;
   }
   warnings.add(fmt::format(

@@ -202,8 +202,14 @@ SceneChanges::Change read_lights(const std::vector<std::string>& texts) {
   };
 }
 
-/// Calls `change` for every field; a scene without any gets the one that it stands for.
-void for_each_field(Scene& scene, const std::function<void(Field&)>& change) {
+/// Calls `change` for every field; a scene without any gets the one that it stands for. Throws
+/// Error where it draws something else instead.
+void for_each_field(Scene& scene, std::string_view option,
+                    const std::function<void(Field&)>& change) {
+  if (scene.fields.empty() && !scene.geometry.empty()) {
+    throw Error(
+        fmt::format("{}: is for fields, and the scene draws none, but balls or sticks", option));
+  }
   if (scene.fields.empty()) scene.fields.emplace_back().name = "all";
   for (Field& field : scene.fields) change(field);
 }
@@ -222,7 +228,7 @@ void add_number_or_property(CLI::App& command, SceneChanges& changes, const std:
                    number ? NumberOrProperty(*number) : NumberOrProperty(text);
                return [name, member, value](Scene& scene) {
                  bool any = false;
-                 for_each_field(scene, [&](Field& field) {
+                 for_each_field(scene, name, [&](Field& field) {
                    if (field.grid) return;
                    field.*member = value;
                    any = true;
@@ -296,7 +302,7 @@ SceneChanges::Change read_transfer_function_option(const std::string& text) {
   names.emplace_back(species_colors);
   if (std::find(names.begin(), names.end(), text) != names.end()) {
     return [text](Scene& scene) {
-      for_each_field(scene, [&](Field& field) {
+      for_each_field(scene, "--transfer-function", [&](Field& field) {
         field.transfer_function = NamedTransferFunction{text, {}, {}, {}};
       });
     };
@@ -308,7 +314,8 @@ SceneChanges::Change read_transfer_function_option(const std::string& text) {
   }
   return [text](Scene& scene) {
     const auto function = read_transfer_function(text);
-    for_each_field(scene, [&](Field& field) { field.transfer_function = function; });
+    for_each_field(scene, "--transfer-function",
+                   [&](Field& field) { field.transfer_function = function; });
   };
 }
 
@@ -481,6 +488,8 @@ void add_size_option(CLI::App& command, SceneChanges& changes) {
 
 void add_picture_options(CLI::App& command, SceneChanges& changes) {
   add_size_option(command, changes);
+  add_option(command, changes, "--style", "NAME",
+             fmt::format("what is drawn: {}", fmt::join(style_names(), ", ")), read_style);
   add_camera_options(command, changes);
   add_option(
       command, changes, "--transfer-function", "NAME|FILE.json",
@@ -500,8 +509,6 @@ void add_picture_options(CLI::App& command, SceneChanges& changes) {
              [](Scene& scene, double v) { scene.render.termination_opacity = v; });
   add_repeatable(command, changes, "--clip-plane", "NX,NY,NZ,D",
                  "cuts away what lies farther than D along the normal", read_clip_planes);
-  add_option(command, changes, "--style", "NAME",
-             fmt::format("what is drawn: {}", fmt::join(style_names(), ", ")), read_style);
   add_number(
       command, changes, "--ambient-occlusion", "N",
       "rays a pixel for the ambient occlusion of surfaces (default: 16)", ray_count,

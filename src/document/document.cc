@@ -265,6 +265,7 @@ ResolvedScene Document::resolve_with(const Next& next, const ParticleSet& partic
 
 void Document::adopt(Next& next, ResolvedScene resolved, const std::vector<FieldSource>& sources) {
   Scene filled = fill_in(next.scene, next.fields, sources, resolved);
+  fill_in_colors(next.frame ? *next.frame : particles_, filled.geometry);
   std::vector<FieldInfo> fields = field_info(next.fields, sources);
   scene_ = std::move(filled);
   resolved_ = std::move(resolved);
@@ -296,8 +297,9 @@ Camera Document::fit(double aspect) const {
   open.eye.reset();
   open.target.reset();
   open.up.reset();
-  const std::vector<VisibleSphere> spheres = spheres_of_view(
-      particles_, sources_, geometry_, visible_fields(fields_), renderer_->kernels());
+  const std::vector<VisibleSphere> spheres =
+      spheres_of_view(particles_, sources_, geometry_, visible_fields(fields_),
+                      renderer_->kernels(), scene_.render.clip_planes);
   Camera camera = fit_camera(open, spheres, aspect);
   if (camera.orthographic_height) {
     const CameraAxes axes = camera_axes(camera);

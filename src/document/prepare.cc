@@ -131,6 +131,7 @@ PreparedScene prepare_scene(Scene scene, const ParticleSet& particles,
                                    renderer.kernels(), progress, renderer.grids());
   renderer.prepare(resolved.render.engine);
   Scene filled_in = fill_in(scene, fields, sources, resolved);
+  fill_in_colors(particles, filled_in.geometry);
   DataExtent extent = data_extent(particles, renderer, sources);
   return {std::move(renderer), std::move(resolved), std::move(filled_in), std::move(extent)};
 }

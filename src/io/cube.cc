@@ -11,6 +11,7 @@
 #include "io/formats.h"
 #include "io/grid_format.h"
 #include "io/in_memory.h"
+#include "io/move_into_cell.h"
 #include "io/number_text.h"
 #include "io/scalars.h"
 #include "io/table.h"
@@ -90,8 +91,10 @@ void take_charges(std::vector<float>& charges, const std::vector<std::int64_t>& 
   if (!zero && !same) atoms.properties.push_back({"charge", std::move(charges)});
 }
 
+/// Into the cell, if there is one.
 void read_atoms(const std::filesystem::path& path, LineReader& lines, std::uint64_t count,
-                double unit, const ReadOptions& options, ParticleSet& atoms) {
+                double unit, const std::optional<Cell>& periodic_cell, const ReadOptions& options,
+                ParticleSet& atoms) {
   std::vector<Column> columns{{.name = "number", .kind = Column::Kind::integer},
                               {.name = "charge", .kind = Column::Kind::single}};
   for (const char* axis : {"x", "y", "z"}) {
@@ -103,6 +106,9 @@ void read_atoms(const std::filesystem::path& path, LineReader& lines, std::uint6
   }
   name_elements(columns[0].integers, atoms);
   take_charges(columns[1].singles, columns[0].integers, atoms);
+  if (periodic_cell) {
+    move_into_cell(*periodic_cell, columns[2].reals, columns[3].reals, columns[4].reals);
+  }
   set_positions(atoms, columns[2].reals, columns[3].reals, columns[4].reals);
 }
 
@@ -136,6 +142,15 @@ std::vector<std::string> numbered_names(std::int64_t count) {
   return names;
 }
 
+/// The box that the voxels fill.
+Cell cell_of(const Grid& shape) {
+  Cell cell{shape.origin, {}, {shape.periodic, shape.periodic, shape.periodic}};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    cell.vectors[axis] = static_cast<double>(shape.dims[axis]) * shape.steps[axis];
+  }
+  return cell;
+}
+
 CubeHeader read_header(const std::filesystem::path& path, LineReader& lines,
                        const ReadOptions& options) {
   const std::string_view title = lines.next("a title line");
@@ -157,19 +172,15 @@ CubeHeader read_header(const std::filesystem::path& path, LineReader& lines,
   header.shape.periodic = title.find("PWScf") != std::string_view::npos ||
                           second_title.find("FFT grid") != std::string_view::npos;
 
-  read_atoms(path, lines, static_cast<std::uint64_t>(std::abs(first.count)), unit, options,
+  std::optional<Cell> cell;
+  if (header.shape.periodic) {
+    check_steps(path, header.shape);
+    cell = cell_of(header.shape);
+  }
+  read_atoms(path, lines, static_cast<std::uint64_t>(std::abs(first.count)), unit, cell, options,
              header.atoms);
   header.names = has_orbitals ? read_orbitals(lines) : numbered_names(first.behind);
   return header;
-}
-
-/// The box that the voxels fill.
-Cell cell_of(const Grid& shape) {
-  Cell cell{shape.origin, {}, {shape.periodic, shape.periodic, shape.periodic}};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    cell.vectors[axis] = static_cast<double>(shape.dims[axis]) * shape.steps[axis];
-  }
-  return cell;
 }
 
 std::unique_ptr<Trajectory> open_cube(const std::filesystem::path& path,

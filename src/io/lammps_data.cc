@@ -12,6 +12,7 @@
 #include "io/id_index.h"
 #include "io/lammps_atom_styles.h"
 #include "io/lammps_units.h"
+#include "io/row_loop.h"
 #include "io/table.h"
 #include "io/text_trajectory.h"
 #include "io/type_names.h"
@@ -280,12 +281,6 @@ class DataReader {
     }
   }
 
-  std::uint32_t find_atom(const IdIndex& index, std::int64_t id, std::uint64_t line) const {
-    const auto found = index.find(id);
-    if (!found) throw Error(path_, line, fmt::format("expected the id of an atom, found {}", id));
-    return *found;
-  }
-
   void take_velocities() {
     std::vector<Column> columns{{.name = "id", .kind = Column::Kind::integer}};
     for (const char* name : {"vx", "vy", "vz"}) {
@@ -305,9 +300,13 @@ class DataReader {
     const IdIndex index(particles_.ids);
     std::vector<Column> sorted = columns;
     for (std::size_t row = 0; row < particles_.size(); ++row) {
-      const auto i = find_atom(index, columns[0].integers[row], velocities_->first_line);
+      const auto i = index.find(columns[0].integers[row]);
+      if (!i) {
+        throw Error(path_, line_of_row(*velocities_, row),
+                    fmt::format("expected the id of an atom, found {}", columns[0].integers[row]));
+      }
       for (std::size_t c = 1; c < columns.size(); ++c) {
-        sorted[c].singles[i] = columns[c].singles[row];
+        sorted[c].singles[*i] = columns[c].singles[row];
       }
     }
     columns = std::move(sorted);
@@ -321,11 +320,22 @@ class DataReader {
     const std::uint64_t n = header_.count("bonds");
     const IdIndex index(particles_.ids);
     parse_table(path_, *bonds_, n, RowWidth::at_least, columns, options_);
+    std::vector<std::size_t> unknown;  // rows
     for (std::size_t row = 0; row < n; ++row) {
-      const auto a = find_atom(index, columns[2].integers[row], bonds_->first_line);
-      const auto b = find_atom(index, columns[3].integers[row], bonds_->first_line);
-      particles_.bonds.push_back({std::min(a, b), std::max(a, b)});
+      const auto a = index.find(columns[2].integers[row]), b = index.find(columns[3].integers[row]);
+      if (a && b) {
+        particles_.bonds.push_back({std::min(*a, *b), std::max(*a, *b)});
+      } else {
+        unknown.push_back(row);
+      }
     }
+    if (unknown.empty() || options_.warnings == nullptr) return;
+    options_.warnings->add(
+        Error(path_, line_of_row(*bonds_, unknown.front()),
+              fmt::format("{} to atoms that are not there left out{}",
+                          unknown.size() == 1 ? "1 bond" : fmt::format("{} bonds", unknown.size()),
+                          unknown.size() == 1 ? "" : ", of which this is the first"))
+            .what());
   }
 
   const std::filesystem::path& path_;

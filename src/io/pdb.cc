@@ -211,6 +211,7 @@ ParticleSet Pdb::parse_frame(TextBlock frame) {
 }
 
 void Pdb::add_bonds(const std::vector<Connection>& connections, ParticleSet& particles) const {
+  particles.bonds_are_partial = true;
   if (connections.empty()) return;
   std::unordered_map<std::int64_t, std::uint32_t> indices;
   for (std::size_t i = 0; i < particles.size(); ++i) {

@@ -43,6 +43,14 @@ std::vector<RowChunk> split_rows(TextBlock block) {
   return chunks;
 }
 
+std::uint64_t line_of_row(TextBlock block, std::size_t row) {
+  std::uint64_t of_row = block.first_line;
+  for_each_row({block}, [&](std::size_t number, const char*, const char*, std::uint64_t line) {
+    if (number == row) of_row = line;
+  });
+  return of_row;
+}
+
 void for_each_chunk(const std::filesystem::path& file, std::size_t num_chunks,
                     const std::function<void(std::size_t)>& parse, const ReadOptions& options) {
   std::vector<std::exception_ptr> errors(num_chunks);

@@ -23,6 +23,9 @@ struct RowChunk {
 /// Cuts `block` into chunks for parsing in parallel and counts their rows.
 std::vector<RowChunk> split_rows(TextBlock block);
 
+/// The number of the line that row number `row` of the block is.
+std::uint64_t line_of_row(TextBlock block, std::size_t row);
+
 /// Calls parse(chunk_index) for all chunks in parallel, with progress. Of the Errors that it
 /// throws, that of the first chunk is passed on.
 void for_each_chunk(const std::filesystem::path& file, std::size_t num_chunks,

@@ -12,6 +12,7 @@
 #include "io/formats.h"
 #include "io/grid_format.h"
 #include "io/in_memory.h"
+#include "io/move_into_cell.h"
 #include "io/number_text.h"
 #include "io/scalars.h"
 #include "io/table.h"
@@ -98,6 +99,7 @@ struct Species {
 Species read_species(LineReader& lines, std::string_view title) {
   constexpr std::string_view expected = "the number of atoms of each species";
   Species species;
+  if (title.starts_with('#')) title.remove_prefix(1);
   std::vector<std::string_view> names = split_tokens(title);
   const bool title_names_elements =
       std::all_of(names.begin(), names.end(),
@@ -145,6 +147,19 @@ void name_species(const std::filesystem::path& path, const Species& species,
   name_types(path, types, hints, options, atoms);
 }
 
+/// The three numbers of a grid, if that is what the line is.
+std::optional<std::array<std::size_t, 3>> dims_in(std::string_view line) {
+  const auto tokens = split_tokens(line);
+  if (tokens.size() != 3) return std::nullopt;
+  std::array<std::size_t, 3> dims{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto n = to_count(tokens[axis]);
+    if (!n || *n == 0) return std::nullopt;
+    dims[axis] = *n;
+  }
+  return dims;
+}
+
 /// The structure: of a file of nothing else all that is read. What follows it, such as velocities,
 /// is left in `lines`.
 ParticleSet read_structure(const std::filesystem::path& path, LineReader& lines,
@@ -182,25 +197,14 @@ ParticleSet read_structure(const std::filesystem::path& path, LineReader& lines,
     y[i] = p.y;
     z[i] = p.z;
   }
+  // With a grid they belong to the cell that it fills; structures alone stay as they are.
+  if (lines.skip_blank_lines() && dims_in(lines.peek())) move_into_cell(cell, x, y, z);
   ParticleSet atoms;
   atoms.length_unit = "angstrom";
   atoms.cell = cell;
   set_positions(atoms, x, y, z);
   name_species(path, species, options, atoms);
   return atoms;
-}
-
-/// The three numbers of a grid, if that is what the line is.
-std::optional<std::array<std::size_t, 3>> dims_in(std::string_view line) {
-  const auto tokens = split_tokens(line);
-  if (tokens.size() != 3) return std::nullopt;
-  std::array<std::size_t, 3> dims{};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto n = to_count(tokens[axis]);
-    if (!n || *n == 0) return std::nullopt;
-    dims[axis] = *n;
-  }
-  return dims;
 }
 
 std::unique_ptr<Trajectory> open_vasp(const std::filesystem::path& path,
@@ -246,8 +250,8 @@ class BlockReader {
     const std::string_view line = lines.next("");
     const auto dims = dims_in(line);
     if (!dims) {
-      lines.fail(
-          fmt::format("expected the three numbers of a grid, found '{}'", printable(trim(line))));
+      lines.fail(fmt::format("expected the three numbers of a grid behind {} atoms, found '{}'",
+                             num_atoms_, printable(trim(line))));
     }
     dims_ = *dims;
     dims_line_ = lines.line();
@@ -400,7 +404,7 @@ bool matches_vasp(std::string_view head) {
   }
   const auto is_counts = [](std::string_view line) {
     const auto tokens = split_tokens(line);
-    return !tokens.empty() && to_count(tokens[0]).has_value();
+    return !tokens.empty() && to_integer(tokens[0]).has_value();  // (the reader refuses negative)
   };
   if (leading_reals(lines[1]).empty()) return false;
   for (std::size_t i = 2; i < 5; ++i) {

@@ -119,33 +119,51 @@ class ArrayReader {
     return bytes;
   }
 
+  /// How the numbers in front of the values are stored.
+  struct NumberLayout {
+    bool big_endian;
+    std::size_t width;  ///< bytes of a number
+  };
+  NumberLayout layout() const { return {header_.big_endian, header_.header_bytes}; }
+  std::size_t other_width() const { return 12 - header_.header_bytes; }
+
   /// Number `index` of those that stand before the values.
-  std::uint64_t header_number(std::string_view bytes, std::size_t index, bool big_endian) const {
-    const char* const at = bytes.data() + index * header_.header_bytes;
-    return header_.header_bytes == 8 ? load_scalar<std::uint64_t>(at, big_endian)
-                                     : load_scalar<std::uint32_t>(at, big_endian);
+  static std::uint64_t header_number(std::string_view bytes, std::size_t index,
+                                     const NumberLayout& layout) {
+    const char* const at = bytes.data() + index * layout.width;
+    return layout.width == 8 ? load_scalar<std::uint64_t>(at, layout.big_endian)
+                             : load_scalar<std::uint32_t>(at, layout.big_endian);
   }
   std::uint64_t header_number(std::string_view bytes, std::size_t index) const {
-    return header_number(bytes, index, header_.big_endian);
+    return header_number(bytes, index, layout());
   }
 
   static std::string_view order_name(bool big_endian) {
     return big_endian ? "BigEndian" : "LittleEndian";
   }
+  static std::string_view type_name(std::size_t width) { return width == 8 ? "UInt64" : "UInt32"; }
 
-  /// `size_in(big_endian)`: bytes of all values as the numbers in front of them say it, read in
-  /// that order of bytes, in floating point, so that no product can overflow.
+  /// `size_in(bytes, layout)`: bytes of all values as the first `count` numbers in front of them
+  /// say it, read so, in floating point, so that no product can overflow.
   template <class Size>
-  void expect_size(Size&& size_in) const {
+  void expect_size(std::size_t count, Size&& size_in) const {
     const auto expected = static_cast<double>(value_bytes());
-    const double found = size_in(header_.big_endian);
+    std::string storage;
+    const double found = size_in(first_bytes(count * layout().width, storage), layout());
     if (found == expected) return;
-    const bool swapped = size_in(!header_.big_endian) == expected;
+    const std::string_view bytes = at_most(8 * count, storage);
+    const auto fits = [&](const NumberLayout& other) {
+      return bytes.size() >= count * other.width && size_in(bytes, other) == expected;
+    };
+    std::string hint;
+    if (fits({!header_.big_endian, header_.header_bytes})) {
+      hint =
+          fmt::format("; with byte_order=\"{}\" it holds these", order_name(!header_.big_endian));
+    } else if (fits({header_.big_endian, other_width()})) {
+      hint = fmt::format("; with header_type=\"{}\" it holds these", type_name(other_width()));
+    }
     fail(fmt::format("holds {:.0f} bytes; expected {} for {} samples of {} bytes, {}{}", found,
-                     value_bytes(), num_samples_, size_of(type_), samples_of_extent(),
-                     swapped ? fmt::format("; with byte_order=\"{}\" it holds these",
-                                           order_name(!header_.big_endian))
-                             : ""));
+                     value_bytes(), num_samples_, size_of(type_), samples_of_extent(), hint));
   }
 
   void warn_if_swapped(std::string_view bytes) const {
@@ -160,38 +178,33 @@ class ArrayReader {
 
   /// [number of bytes][bytes]
   void read_plain(UninitializedVector<float>& values) const {
+    expect_size(1, [](std::string_view bytes, const NumberLayout& layout) {
+      return static_cast<double>(header_number(bytes, 0, layout));
+    });
+    check_header_type();
     std::string storage;
     const std::size_t width = header_.header_bytes;
-    const std::string_view size = first_bytes(width, storage);
-    expect_size([&](bool big) { return static_cast<double>(header_number(size, 0, big)); });
-    check_header_type();
     const std::string_view bytes = first_bytes(width + value_bytes(), storage).substr(width);
     warn_if_swapped(bytes);
     values.resize(num_samples_);
     convert_scalars(bytes, type_, header_.big_endian, values);
   }
 
-  /// Whether the values, behind a number of `width` bytes, end where those in the file do.
-  bool ends_behind(std::size_t width, std::string_view bytes) const {
-    if (bytes.size() < width + value_bytes()) return false;
-    // (padding and blanks may follow)
-    const std::string_view behind = bytes.substr(width + value_bytes());
-    return behind.find_first_not_of(std::string_view("\0 \t\r\n", 5)) == std::string_view::npos;
-  }
-
   /// The number in front of the values may be the same in 4 bytes and in 8, and the values then
-  /// begin elsewhere.
+  /// begin elsewhere: they should end where the file's bytes for them do, but for blanks.
   void check_header_type() const {
     std::string storage;
-    const std::size_t width = header_.header_bytes, other = 12 - width;
+    const std::size_t width = header_.header_bytes, other = other_width();
     const std::string_view bytes = at_most(width + other + value_bytes(), storage);
-    if (bytes.size() < other + value_bytes()) return;
-    const bool same =
-        other == 8 ? load_scalar<std::uint64_t>(bytes.data(), header_.big_endian) == value_bytes()
-                   : load_scalar<std::uint32_t>(bytes.data(), header_.big_endian) == value_bytes();
-    if (!same || ends_behind(width, bytes) || !ends_behind(other, bytes)) return;
+    const auto ends_behind = [&](std::size_t front) {
+      if (bytes.size() < front + value_bytes()) return false;
+      const std::string_view behind = bytes.substr(front + value_bytes());
+      return std::all_of(behind.begin(), behind.end(), is_blank);
+    };
+    if (ends_behind(width) || !ends_behind(other)) return;
+    if (header_number(bytes, 0, {header_.big_endian, other}) != value_bytes()) return;
     fail(fmt::format("does not end behind its {} bytes; with header_type=\"{}\" it would",
-                     value_bytes(), other == 8 ? "UInt64" : "UInt32"));
+                     value_bytes(), type_name(other)));
   }
 
   struct Block {
@@ -227,17 +240,17 @@ class ArrayReader {
   std::vector<Block> find_blocks(std::string& storage) const {
     const std::size_t width = header_.header_bytes;
     std::string_view bytes = first_bytes(3 * width, storage);
+    expect_size(3, [](std::string_view numbers, const NumberLayout& layout) {
+      const auto number = [&](std::size_t k) {
+        return static_cast<double>(header_number(numbers, k, layout));
+      };
+      return (number(0) - (number(2) > 0 ? 1 : 0)) * number(1) + number(2);
+    });
     const std::uint64_t num_blocks = header_number(bytes, 0);
     const std::uint64_t block_bytes = header_number(bytes, 1);
     const std::uint64_t partial_bytes = header_number(bytes, 2);
     if (num_blocks == 0 || block_bytes == 0) fail("has no blocks; expected compressed values");
     const std::uint64_t num_whole = num_blocks - (partial_bytes > 0 ? 1 : 0);
-    expect_size([&](bool big) {
-      const auto number = [&](std::size_t k) {
-        return static_cast<double>(header_number(bytes, k, big));
-      };
-      return (number(0) - (number(2) > 0 ? 1 : 0)) * number(1) + number(2);
-    });
     if (block_bytes % size_of(type_) != 0 || partial_bytes % size_of(type_) != 0) {
       fail(fmt::format("has blocks of {} bytes; expected whole values of {}", block_bytes,
                        size_of(type_)));

@@ -155,10 +155,31 @@ namespace {
 HWY_EXPORT(trace_grid);
 HWY_EXPORT(prune_directions);
 
+/// By the levels' numbers: in which order those come that lie at one depth, as where several
+/// are closed by a grid's face. What is farther from 0 is within the others, and comes first.
+std::vector<std::size_t> ranks_of(const IsosurfaceFrame& frame) {
+  std::vector<const IsosurfaceLevel*> levels;
+  for (const FieldIsosurfaces& field : frame.fields) {
+    const auto first = static_cast<std::ptrdiff_t>(levels.size());
+    for (const IsosurfaceLevel& level : field.levels) levels.push_back(&level);
+    std::stable_sort(levels.begin() + first, levels.end(),
+                     [](const IsosurfaceLevel* a, const IsosurfaceLevel* b) {
+                       return std::abs(a->value) > std::abs(b->value);
+                     });
+  }
+  std::vector<std::size_t> ranks;
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    ranks.resize(std::max<std::size_t>(ranks.size(), levels[i]->number + 1));
+    ranks[levels[i]->number] = i;
+  }
+  return ranks;
+}
+
 /// Sorts hits ray by ray and from the front, and leaves out those behind opaque ones.
-void keep_visible(std::vector<IsosurfaceHit>& hits) {
-  std::sort(hits.begin(), hits.end(), [](const IsosurfaceHit& a, const IsosurfaceHit& b) {
-    return std::tie(a.ray, a.depth, a.level) < std::tie(b.ray, b.depth, b.level);
+void keep_visible(const IsosurfaceFrame& frame, std::vector<IsosurfaceHit>& hits) {
+  const std::vector<std::size_t> ranks = ranks_of(frame);
+  std::sort(hits.begin(), hits.end(), [&](const IsosurfaceHit& a, const IsosurfaceHit& b) {
+    return std::tie(a.ray, a.depth, ranks[a.level]) < std::tie(b.ray, b.depth, ranks[b.level]);
   });
   std::size_t size = 0;
   bool ended = false;
@@ -184,7 +205,7 @@ void trace_isosurfaces(const IsosurfaceFrame& frame, const RayGrid& grid,
                        std::vector<IsosurfaceHit>& out) {
   out.clear();
   HWY_DYNAMIC_DISPATCH(trace_grid)(frame, grid, out);
-  keep_visible(out);
+  keep_visible(frame, out);
 }
 
 void prune(const IsosurfaceFrame& frame, const Point3d& place, const Vector3d& normal,

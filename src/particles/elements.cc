@@ -1,6 +1,7 @@
 // The table of elements and the look-ups in it.
 #include "particles/elements.h"
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <gemmi/elem.hpp>
@@ -114,6 +115,22 @@ constexpr Element elements[] = {
 };
 // clang-format on
 
+// Of the elements of the d and f blocks: Alvarez, Dalton Trans. 2013, 42, 8617,
+// doi:10.1039/c3dt50599e, which has none of promethium: the mean of its neighbours'.
+struct AtomicRadius {
+  int number;
+  float radius;
+};
+constexpr AtomicRadius alvarez_radii[] = {
+    {21, 2.58F}, {22, 2.46F}, {23, 2.42F}, {24, 2.45F}, {25, 2.45F}, {26, 2.44F}, {27, 2.40F},
+    {28, 2.40F}, {29, 2.38F}, {30, 2.39F}, {39, 2.75F}, {40, 2.52F}, {41, 2.56F}, {42, 2.45F},
+    {43, 2.44F}, {44, 2.46F}, {45, 2.44F}, {46, 2.15F}, {47, 2.53F}, {48, 2.49F}, {57, 2.98F},
+    {58, 2.88F}, {59, 2.92F}, {60, 2.95F}, {61, 2.93F}, {62, 2.90F}, {63, 2.87F}, {64, 2.83F},
+    {65, 2.79F}, {66, 2.87F}, {67, 2.81F}, {68, 2.83F}, {69, 2.79F}, {70, 2.80F}, {71, 2.74F},
+    {72, 2.63F}, {73, 2.53F}, {74, 2.57F}, {75, 2.49F}, {76, 2.48F}, {77, 2.41F}, {78, 2.29F},
+    {79, 2.32F}, {80, 2.45F}, {89, 2.80F}, {90, 2.93F}, {91, 2.88F}, {92, 2.71F}, {93, 2.82F},
+    {94, 2.81F}, {95, 2.83F}, {96, 3.05F}};
+
 constexpr int num_elements = static_cast<int>(std::size(elements));
 
 /// `letters` in the case of a symbol: "SI" becomes "Si".
@@ -166,6 +183,10 @@ const Element* element_by_mass(double mass) {
 }
 
 float van_der_waals_radius(const Element& element) {
+  const auto* const found =
+      std::find_if(std::begin(alvarez_radii), std::end(alvarez_radii),
+                   [&](const AtomicRadius& each) { return each.number == element.number; });
+  if (found != std::end(alvarez_radii)) return found->radius;
   return gemmi::vdw_radius(static_cast<gemmi::El>(element.number));
 }
 

@@ -15,8 +15,8 @@ struct Element {
   std::array<std::uint8_t, 3> color;  ///< sRGB, the customary colour in molecular pictures
 };
 
-/// Angstrom: Mantina et al. (2009), Bondi (1964); where neither has one, the table of cctbx, all as
-/// gemmi gives them.
+/// Angstrom: Mantina et al. (2009) and Bondi (1964), as gemmi gives them; of transition metals,
+/// lanthanides and actinides, for which these have none or much smaller ones, Alvarez (2013).
 float van_der_waals_radius(const Element& element);
 
 /// gemmi's list, without germanium and antimony, whose bonds have directions.

@@ -45,6 +45,8 @@ struct ParticleSet {
   /// their neighbours' distance gives, as N-body particles do: see default_radii().
   bool radii_from_neighbors = false;
   std::vector<Bond> bonds;
+  /// Whether there are others, which are for distances to tell: PDB files list those of ligands.
+  bool bonds_are_partial = false;
 
   std::optional<Cell> cell;
   std::optional<double> time;  ///< the file's own unit

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "particles/bonds.h"
 #include "scene/transfer_function.h"
 #include "surface/find_bonds.h"
 #include "surface/make_sticks.h"
@@ -111,7 +112,11 @@ Surface make_surface(const ParticleSet& particles, GeometrySource& geometry,
   set_colors(geometry, drawn, surface.colors);
   field_values = find_field_values(kernels, geometry, particle_of, drawn);
   if (!geometry.bonds_among.empty()) {
-    geometry.bonds = find_bonds(particles, geometry.bonds_among, particle_of, kernels);
+    const auto found = find_bonds(particles, geometry.bonds_among, particle_of, kernels);
+    geometry.bonds.insert(geometry.bonds.end(), found.begin(), found.end());
+    sort_bonds(geometry.bonds);
+    geometry.bonds.erase(std::unique(geometry.bonds.begin(), geometry.bonds.end()),
+                         geometry.bonds.end());
   }
   if (!geometry.bonds.empty()) {
     surface.sticks = make_sticks(particles, geometry.bonds, particle_of, kernels,

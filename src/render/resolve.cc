@@ -48,7 +48,8 @@ std::vector<VisibleSphere> spheres_of_view(const ParticleSet& particles,
                                            const std::vector<FieldSource>& sources,
                                            const GeometrySource& geometry,
                                            const std::vector<Field>& fields,
-                                           const KernelSet& kernels) {
+                                           const KernelSet& kernels,
+                                           const std::vector<ClipPlane>& clip_planes) {
   const auto values_at = [&kernels](std::size_t field, std::span<const Point3d> points) {
     const std::vector<FieldSample> samples = probe(kernels, points);
     std::vector<double> values(points.size());
@@ -58,7 +59,7 @@ std::vector<VisibleSphere> spheres_of_view(const ParticleSet& particles,
     return values;
   };
   std::vector<VisibleSphere> spheres =
-      visible_spheres(particles, sources, geometry, fields, values_at);
+      visible_spheres(particles, sources, geometry, fields, values_at, clip_planes);
   if (!spheres.empty()) return spheres;
   Bounds3d box = particles.bounds();
   if (box.empty()) box = {{-1, -1, -1}, {1, 1, 1}};
@@ -74,7 +75,8 @@ ResolvedScene resolve(const Scene& scene, const ParticleSet& particles,
   const double aspect = static_cast<double>(scene.render.width) / scene.render.height;
   std::vector<VisibleSphere> spheres;
   if (!(scene.eye && scene.target && scene.up)) {
-    spheres = spheres_of_view(particles, sources, geometry, fields, kernels);
+    spheres =
+        spheres_of_view(particles, sources, geometry, fields, kernels, scene.render.clip_planes);
   }
   resolved.camera = fit_camera(scene, spheres, aspect);
   // Without fields nothing is sampled.

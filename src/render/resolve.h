@@ -17,7 +17,8 @@ std::vector<VisibleSphere> spheres_of_view(const ParticleSet& particles,
                                            const std::vector<FieldSource>& sources,
                                            const GeometrySource& geometry,
                                            const std::vector<Field>& fields,
-                                           const KernelSet& kernels);
+                                           const KernelSet& kernels,
+                                           const std::vector<ClipPlane>& clip_planes);
 
 /// Fills in what `scene` leaves open: camera from the fields and `geometry`, step size from the
 /// fields, transfer functions from what the view shows of them. `fields` are those that the scene

@@ -30,6 +30,11 @@ std::string describe(const json& value) {
 constexpr struct {
   std::string_view key, place;
 } places[] = {
+    {"style", "the scene itself"},
+    {"size", "render"},
+    {"select", "a field, or balls or sticks of geometry"},
+    {"points", "a field's transfer_function"},
+    {"grid", "a field"},
     {"eye", "camera"},
     {"target", "camera"},
     {"fov", "camera"},

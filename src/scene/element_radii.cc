@@ -39,11 +39,15 @@ std::vector<float> radii_of_species(const ParticleSet& particles, ElementRadius 
     ++known;
   }
   const auto other = static_cast<float>(sum / known);
+  std::string names;
   for (std::size_t s = 0; s < radii.size(); ++s) {
     if (!std::isnan(radii[s])) continue;
     radii[s] = other;
-    warnings.add(fmt::format("species '{}' is no element: it has the radius {:.3g}",
-                             printable(particles.species_names[s]), other));
+    names += (names.empty() ? "" : ", ") + printable(particles.species_names[s]);
+  }
+  if (!names.empty()) {
+    warnings.add(fmt::format("no elements, and of the radius {:.3g}: the species {}", other,
+                             printable(names, 200)));
   }
   return radii;
 }

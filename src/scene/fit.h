@@ -28,15 +28,17 @@ using FieldValuesAt =
 /// Of fields with isosurfaces the particles, each as large as the surface of the level that lies
 /// farthest out may be there: with `values_at`, where phi, as high at the centre as the field and a
 /// quarter more, falls to the level; without it, and where kernels are of both signs, the support.
-/// With them the balls of `geometry`, whole, the ends of sticks that leave a periodic cell, and the
-/// corners of what grids have to be seen, as spheres of radius 0: magnitudes of a tenth of the
-/// level that encloses most of a field (enclosing_level()), or of its isosurfaces in `fields`,
-/// which are those of the sources.
+/// With them the balls of `geometry`, whole, the ends of sticks that leave a periodic cell, and
+/// points around what grids have to be seen, as spheres of radius 0: magnitudes of three tenths of
+/// the level that encloses most of a field (enclosing_level()), or of its isosurfaces in `fields`,
+/// which are those of the sources. What `clip_planes` take away is not there, unless they leave
+/// nothing.
 std::vector<VisibleSphere> visible_spheres(const ParticleSet& particles,
                                            const std::vector<FieldSource>& sources,
                                            const GeometrySource& geometry = {},
                                            const std::vector<Field>& fields = {},
-                                           const FieldValuesAt& values_at = {});
+                                           const FieldValuesAt& values_at = {},
+                                           const std::vector<ClipPlane>& clip_planes = {});
 
 /// The scene's camera; what it leaves open is fitted so that the spheres just fill an image of
 /// `aspect` = width / height. The view is oblique, mostly along their box's thinnest axis, so that

@@ -19,9 +19,11 @@ constexpr double default_fov = 45;    // degrees
 constexpr double nearly_cubic = 0.8;  // thinnest by largest side
 constexpr double flat = 1e-3;         // likewise: seen straight, as obliquely it would be a line
 constexpr double nearly_parallel = 0.99;  // cosine
-constexpr double in_front = 0.05;         // of the diagonal, from the eye to the first of the data
-constexpr double easily_seen = 1.75;      // standard deviations: there a Gaussian is at a fifth
-constexpr double large = 2.5;             // times the middle radius
+// Of the diagonal, from the eye to the first of the data: a few atoms behind each other are to look
+// about as large as they are, unless the scene asks for another view.
+constexpr double in_front = 0.3, in_front_of_own_fov = 0.05;
+constexpr double easily_seen = 1.75;  // standard deviations: there a Gaussian is at a fifth
+constexpr double large = 2.5;         // times the middle radius
 constexpr std::size_t particles_looked_at = 1 << 18;  // of one field
 constexpr std::size_t samples_looked_at = 1 << 20;    // of one grid
 
@@ -226,15 +228,54 @@ void add_isosurfaces(const ParticleSet& particles, const FieldSource& source, co
   }
 }
 
+/// How far a point lies beyond a plane.
+double beyond(const ClipPlane& plane, const Point3d& p) {
+  return (dot(plane.normal, p - Point3d{}) - plane.distance) / length(plane.normal);
+}
+
+/// Takes out the spheres that lie beyond a plane, from number `first` on: their centres or, if
+/// `in_part` counts, all of them.
+void cut_spheres(const std::vector<ClipPlane>& planes, std::size_t first, bool in_part,
+                 std::vector<VisibleSphere>& spheres) {
+  const auto is_cut = [&](const VisibleSphere& sphere) {
+    return std::any_of(planes.begin(), planes.end(), [&](const ClipPlane& plane) {
+      return beyond(plane, sphere.center) > (in_part ? sphere.radius : 0);
+    });
+  };
+  spheres.erase(
+      std::remove_if(spheres.begin() + static_cast<std::ptrdiff_t>(first), spheres.end(), is_cut),
+      spheres.end());
+}
+
+/// Cuts the lines between points 0 and 1, 2 and 3, ... off at the planes.
+void cut_lines(const std::vector<ClipPlane>& planes, std::vector<Point3d>& points) {
+  for (const ClipPlane& plane : planes) {
+    std::size_t size = 0;
+    for (std::size_t i = 0; i + 1 < points.size(); i += 2) {
+      Point3d ends[2] = {points[i], points[i + 1]};
+      const double outside[2] = {beyond(plane, ends[0]), beyond(plane, ends[1])};
+      if (outside[0] > 0 && outside[1] > 0) continue;
+      const Point3d at_plane =
+          ends[0] + outside[0] / (outside[0] - outside[1]) * (ends[1] - ends[0]);
+      for (int end = 0; end < 2; ++end) {
+        points[size++] = outside[end] > 0 ? at_plane : ends[end];
+      }
+    }
+    points.resize(size);
+  }
+}
+
 /// Adds what is to be seen of all grids, as often as it takes to be no strays.
 void add_grids(const std::vector<FieldSource>& sources, const std::vector<Field>& fields,
-               std::vector<VisibleSphere>& spheres) {
+               const std::vector<ClipPlane>& planes, std::vector<VisibleSphere>& spheres) {
   constexpr std::size_t parts = 8;  // of a grid, none of which is a stray
   const std::size_t others = spheres.size();
   for (std::size_t f = 0; f < sources.size(); ++f) {
     if (!sources[f].grid) continue;
-    const std::vector<Point3d> points =
+    std::vector<Point3d> points =
         visible_points(*sources[f].grid, draws_volume(fields, f), least_level_of(fields, f));
+    cut_lines(planes, points);
+    if (points.empty()) continue;
     const std::size_t times = 1 + parts * others / (stray_share * points.size());
     for (std::size_t n = 0; n < times; ++n) {
       for (const Point3d& point : points) spheres.push_back({point, 0});
@@ -323,7 +364,8 @@ std::vector<VisibleSphere> visible_spheres(const ParticleSet& particles,
                                            const std::vector<FieldSource>& sources,
                                            const GeometrySource& geometry,
                                            const std::vector<Field>& fields,
-                                           const FieldValuesAt& values_at) {
+                                           const FieldValuesAt& values_at,
+                                           const std::vector<ClipPlane>& clip_planes) {
   std::vector<VisibleSphere> spheres;
   std::mt19937 random(1);
   for (std::size_t f = 0; f < sources.size(); ++f) {
@@ -340,8 +382,14 @@ std::vector<VisibleSphere> visible_spheres(const ParticleSet& particles,
     if (sources[f].grid || fields[f].isosurfaces.empty()) continue;
     add_isosurfaces(particles, sources[f], fields[f], f, values_at, random, spheres);
   }
+  cut_spheres(clip_planes, 0, true, spheres);
+  const std::size_t of_fields = spheres.size();
   add_geometry(particles, geometry, random, spheres);
-  add_grids(sources, fields, spheres);
+  cut_spheres(clip_planes, of_fields, false, spheres);
+  add_grids(sources, fields, clip_planes, spheres);
+  if (spheres.empty() && !clip_planes.empty()) {
+    return visible_spheres(particles, sources, geometry, fields, values_at);
+  }
   // Nothing is drawn: the place where something could be.
   if (const Bounds3d box = particles.bounds(); spheres.empty() && !box.empty()) {
     spheres = {{box.min, 0}, {box.max, 0}};
@@ -363,10 +411,11 @@ Camera fit_camera(const Scene& scene, const std::vector<VisibleSphere>& spheres,
   camera.fov_degrees = scene.fov_degrees.value_or(default_fov);
   camera.orthographic_height = scene.orthographic_height;
   camera.target = scene.target.value_or(box.center());
-  camera.eye =
-      scene.eye.value_or(camera.target + direction_to_eye(sides, scene.up ? &*scene.up : nullptr));
+  // (by the diagonal: so that it is told apart from the target, however large all is)
+  camera.eye = scene.eye.value_or(
+      camera.target + diagonal * direction_to_eye(sides, scene.up ? &*scene.up : nullptr));
   if (scene.eye && !scene.target && camera.eye == camera.target) {
-    camera.target = camera.eye - direction_to_eye(sides, nullptr);
+    camera.target = camera.eye - diagonal * direction_to_eye(sides, nullptr);
   }
   camera.up = scene.up.value_or(default_up(camera.target - camera.eye, viewing_axis(sides)));
   const CameraAxes axes = camera_axes(camera);
@@ -390,9 +439,10 @@ Camera fit_camera(const Scene& scene, const std::vector<VisibleSphere>& spheres,
   }
   const double nearest = largest_of(spheres, [&](const VisibleSphere& s) { return -front(s); });
   const double tangent = margin * std::tan(camera.fov_degrees * std::numbers::pi / 360);
+  const double room = diagonal * (scene.fov_degrees ? in_front_of_own_fov : in_front);
   // (also behind a target that lies before all of it)
   const Placing placing =
-      place_in_front(place, tangent, std::max(nearest, 0.0) + in_front * diagonal);
+      place_in_front(place, tangent, std::max(nearest, 0.0) + room);
   camera.target = camera.target + placing.shift;
   camera.eye = camera.target - placing.distance * axes.forward;
   return camera;

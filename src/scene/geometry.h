@@ -16,7 +16,7 @@
 
 namespace motes {
 
-/// Radii from a table of elements: van der Waals (Mantina et al. 2009, Bondi 1964) or covalent
+/// Radii from a table of elements: van der Waals (van_der_waals_radius()) or covalent
 /// (Cordero et al. 2008), angstrom.
 enum class ElementRadius { van_der_waals, covalent };
 
@@ -58,8 +58,8 @@ struct GeometrySource {
   /// 0xrrggbb; one an index, or one for all. See by_field().
   std::vector<std::uint32_t> srgb;
   std::vector<Bond> bonds;  ///< between particles that are drawn
-  /// One a particle: whether it has bonds by distance, which are found when there is a tree; empty
-  /// where bonds are the file's.
+  /// One a particle: whether it has bonds by distance, which are found when there is a tree and
+  /// join the file's; empty where all are the file's.
   std::vector<bool> bonds_among;
   float stick_radius = 0;  ///< file's length
 
@@ -81,6 +81,9 @@ inline bool by_field(std::uint32_t srgb) { return (srgb & for_want_of_field) != 
 GeometrySource make_geometry_source(const ParticleSet& particles,
                                     const std::vector<Geometry>& geometry, Warnings& warnings,
                                     Progress* progress = nullptr);
+
+/// Gives colours by a property the range that they have.
+void fill_in_colors(const ParticleSet& particles, std::vector<Geometry>& geometry);
 
 /// The colour of a species that is no element: colours that are easily told apart.
 std::uint32_t other_species_color(std::size_t species);

@@ -67,17 +67,23 @@ std::vector<float> color_values(const ParticleSet& particles, const std::string&
   return values;
 }
 
-std::vector<std::uint32_t> colors_by_property(const ParticleSet& particles,
-                                              const ColorByProperty& color,
-                                              const std::vector<std::uint32_t>& index) {
-  const std::vector<float> values = color_values(particles, color.property);
+/// Of those of the particles in `index` that are finite.
+std::pair<double, double> range_of(const std::vector<float>& values,
+                                   const std::vector<std::uint32_t>& index) {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (const std::uint32_t i : index) {
     if (!std::isfinite(values[i])) continue;
     low = std::min(low, static_cast<double>(values[i]));
     high = std::max(high, static_cast<double>(values[i]));
   }
-  if (color.range) std::tie(low, high) = *color.range;
+  return {low, high};
+}
+
+std::vector<std::uint32_t> colors_by_property(const ParticleSet& particles,
+                                              const ColorByProperty& color,
+                                              const std::vector<std::uint32_t>& index) {
+  const std::vector<float> values = color_values(particles, color.property);
+  const auto [low, high] = color.range.value_or(range_of(values, index));
   constexpr std::size_t steps = 256;
   std::vector<std::uint32_t> table(steps);
   const TransferFunction map = named_transfer_function(color.map, 0, 1, 1);
@@ -125,14 +131,14 @@ void take_bonds(const ParticleSet& particles, BondSource from,
     throw Error("the file has none; expected \"distance\", or a file with bonds");
   }
   std::vector<bool> selected = flags_of(index, particles.size());
-  if (from == BondSource::distance || particles.bonds.empty()) {
-    source.bonds_among = std::move(selected);
-    return;
-  }
+  const bool by_distance = from == BondSource::distance || particles.bonds.empty();
+  const bool both = from == BondSource::automatic && particles.bonds_are_partial;
+  if (by_distance || both) source.bonds_among = selected;
+  if (by_distance) return;
   const std::vector<Bond> bonds = file_bonds(particles, warnings);
   std::copy_if(bonds.begin(), bonds.end(), std::back_inserter(source.bonds),
                [&](const Bond& bond) { return selected[bond.first] && selected[bond.second]; });
-  if (source.bonds.empty()) {
+  if (source.bonds.empty() && !both) {
     warnings.add(
         fmt::format("sticks: none of the {} bonds is between two particles that are both selected",
                     bonds.size()));
@@ -254,6 +260,16 @@ GeometrySource make_geometry_source(const ParticleSet& particles,
   source.radius = gather_or_share(drawn.radius, source.index);
   source.srgb = gather_or_share(drawn.srgb, source.index);
   return source;
+}
+
+void fill_in_colors(const ParticleSet& particles, std::vector<Geometry>& geometry) {
+  for (Geometry& item : geometry) {
+    auto* const color = std::get_if<ColorByProperty>(&item.color);
+    if (color == nullptr || color->range) continue;
+    const auto range = range_of(color_values(particles, color->property),
+                                select_particles(particles, item.select));
+    if (range.first < range.second) color->range = range;
+  }
 }
 
 }  // namespace motes

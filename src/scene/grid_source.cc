@@ -46,6 +46,12 @@ std::vector<Isosurface> fit_isosurfaces(const Grid& grid, const FieldColors& col
     signs = up ? Signs::positive : Signs::negative;
     level = enclosing_level(grid.values, signs);
   }
+  // All of one value, it ends where the grid does.
+  const double sign = signs == Signs::positive ? 1 : -1;
+  if (std::none_of(grid.values.begin(), grid.values.end(),
+                   [&](float value) { return sign * static_cast<double>(value) > level; })) {
+    level *= 0.5;
+  }
   return {{signs == Signs::positive ? level : -level, colors.own, 1}};
 }
 

@@ -11,8 +11,8 @@ namespace motes {
 /// Appends to `out` the fields that number `k` of the scene's, which is a grid, comes to: one a
 /// grid of its file unless it says which, with the grids' names where it has none, or with them
 /// behind its own where there are several. Of several whose values are of both signs, as orbitals,
-/// only the first is visible: four colours in one place tell nothing. Isosurfaces are fitted; finish_fitted() is to follow.
-/// Throws Error, which names the key.
+/// only the first is visible: four colours in one place tell nothing. Isosurfaces are fitted;
+/// finish_fitted() is to follow. Throws Error, which names the key.
 void expand_grid_field(const Field& field, std::size_t k, const std::vector<LoadedGrid>& grids,
                        std::vector<Field>& out);
 

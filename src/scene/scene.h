@@ -233,12 +233,11 @@ void color_by_species(Scene& scene, const ParticleSet& particles);
 
 /// The fields that a scene comes to with these particles and grids: one of all particles where it
 /// has none; a field with species_colors and several species becomes one field a species, and one
-/// of a file with several grids, if it does not say which, one field a grid, of which only the first
-/// of both signs is visible; all have names.
-/// Fitted isosurfaces become those at the level that encloses 85 % of what the grid stands for
-/// (enclosing_level()): opaque, one, or where values are of both signs one of each sign.
-/// Throws Error, which names the key ("fields[1].radius: what") where a field asks for species,
-/// properties or grids that the data do not have.
+/// of a file with several grids, if it does not say which, one field a grid, of which only the
+/// first of both signs is visible; all have names. Fitted isosurfaces become those at the level
+/// that encloses 85 % of what the grid stands for (enclosing_level()): opaque, one, or where values
+/// are of both signs one of each sign. Throws Error, which names the key ("fields[1].radius: what")
+/// where a field asks for species, properties or grids that the data do not have.
 std::vector<Field> expand_fields(const Scene& scene, const ParticleSet& particles,
                                  const std::vector<LoadedGrid>& grids = {});
 

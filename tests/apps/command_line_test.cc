@@ -257,6 +257,19 @@ TEST_F(CommandLine, SticksThatLeaveTheCellAreInThePicture) {
   EXPECT_GT(seen, 100);
 }
 
+TEST_F(CommandLine, OptionsOfFieldsAreRefusedWhereThereAreNone) {
+  for (const std::string style : {"spheres", "ball-and-stick"}) {
+    for (const std::string option : {"--radius 2", "--weight 3", "--transfer-function magma"}) {
+      EXPECT_THAT(failure("render a.xyz -o a.png --style " + style + " " + option, 1),
+                  HasSubstr(option.substr(0, option.find(' ')) + ": is for fields"))
+          << style;
+    }
+  }
+  EXPECT_EQ(
+      failure("render a.xyz -o a.png --size 4x4 --size 5x5", 2),
+      "motes: error: --size: given more than once; expected one value (see motes render --help)\n");
+}
+
 TEST_F(CommandLine, LightsAddUp) {
   workspace_.write("p.xyz", "1\n\nC 0 0 0\n");
   const std::string render = "render p.xyz --size 32x32 --save-scene s.json ";
@@ -391,7 +404,7 @@ TEST_F(CommandLine, ALevelThatIsNotReachedIsNamedWithTheFieldsRange) {
   workspace_.write("s.json", R"({"version": 1, "data": {"path": "a.xyz"}, "fields":
       [{"name": "silicon", "radius": 1, "weight": 2, "select": {"species": "Si"},
         "isosurfaces": [{"value": 7}, {"value": -1}]}]})");
-  const std::string range = "; at its particles it goes from 0 to 2\n";
+  const std::string range = "; it goes from 0 to 2\n";
   EXPECT_EQ(run("render s.json -o a.npy --size 16x16").err,
             "motes: warning: the field 'silicon' does not reach its isosurface at 7" + range +
                 "motes: warning: the field 'silicon' does not reach its isosurface at -1" + range);

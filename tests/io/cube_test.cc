@@ -121,6 +121,16 @@ TEST(Cube, OfOnePeriodIsPeriodic) {
   }
 }
 
+TEST(Cube, HasItsAtomsInThePeriodicCell) {
+  const std::string rest = cube().substr(std::string("water\nof sorts\n").size()) + values();
+  const ParticleSet as_they_are = read_text("a.cube", "a\nb\n" + rest);
+  const ParticleSet moved = read_text("a.cube", "PWScf\nb\n" + rest);
+  // Of edges (1, 0, 0), (0, 3, 0.75) and (0, 0, 8) from (1, -2, 0.5): one has (0, 4/3, 3/16),
+  // the other (-2, 2/3, -1/16).
+  expect_position(moved, 0, as_they_are.position(0) - bohr * Vector3d{0, 3, 0.75});
+  expect_position(moved, 1, as_they_are.position(1) + bohr * Vector3d{2, 0, 8});
+}
+
 TEST(Cube, IsKnownByItsContent) {
   const TemporaryFile file("density.txt", cube() + values());
   EXPECT_TRUE(is_grid_file(file.path()));

@@ -81,6 +81,20 @@ TEST(LammpsData, AFileOfNoAtomsHasNone) {
   EXPECT_TRUE(particles.cell);
 }
 
+TEST(LammpsData, LeavesOutBondsToMissingAtoms) {
+  const std::string head =
+      "title\n2 atoms\n1 atom types\n3 bonds\n\nAtoms\n\n1 1 0 0 0\n2 1 0 0 1\n\nBonds\n\n1 1 1 "
+      "2\n";
+  Warnings warnings;
+  ReadOptions options;
+  options.warnings = &warnings;
+  const auto particles = read_data(head + "\n2 1 2 7\n3 1 8 9\n", options);
+  EXPECT_THAT(particles.bonds, ElementsAre(Bond{0, 1}));
+  EXPECT_THAT(warnings.lines(), testing::Contains(HasSubstr(
+                                    "a.data:15: 2 bonds to atoms that are not there left out, "
+                                    "of which this is the first")));
+}
+
 class BadLammpsData : public testing::TestWithParam<BadText> {};
 
 TEST_P(BadLammpsData, IsRefused) {
@@ -109,9 +123,10 @@ INSTANTIATE_TEST_SUITE_P(
                 "a.data:4: expected 2 numbers before 'xlo xhi'"},
         BadText{"NoBonds", "title\n1 atoms\n1 atom types\n3 bonds\n\nAtoms\n\n1 1 0 0 0\n",
                 "expected a section Bonds with 3 bonds"},
-        BadText{"WrongBond",
-                "title\n1 atoms\n1 atom types\n1 bonds\n\nAtoms\n\n1 1 0 0 0\n\nBonds\n\n1 1 1 7\n",
-                "expected the id of an atom, found 7"},
+        BadText{"WrongVelocity",
+                "title\n2 atoms\n1 atom types\n\nAtoms\n\n1 1 0 0 0\n2 1 0 0 1\n\nVelocities\n\n"
+                "1 0 0 0\n7 0 0 0\n",
+                "a.data:13: expected the id of an atom, found 7"},
         BadText{"WrongMass", "title\n1 atoms\n1 atom types\n\nMasses\n\n1 heavy\n",
                 "a.data:7: expected a type and its mass"}),
     [](const auto& bad) { return bad.param.name; });

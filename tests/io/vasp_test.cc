@@ -47,6 +47,16 @@ TEST(Vasp, GivesItsAtoms) {
   }
 }
 
+// Those of structures alone stay where the file has them.
+TEST(Vasp, HasItsAtomsInTheCellOfItsGrid) {
+  std::string text = density;
+  text.replace(text.find("0.25 0 0.75"), 11, "1.25 -1 0.9999999999");
+  const ParticleSet atoms = read_text("CHGCAR", text);
+  expect_position(atoms, 2, Point3d{0.5, 0, -8e-10});
+  const ParticleSet alone = read_text("POSCAR", text.substr(0, text.find(grid + values)));
+  expect_position(alone, 2, Point3d{0.5 * 1.0 + 2 - 2, -4, 8});
+}
+
 TEST(Vasp, SecondBlockIsTheSpin) {
   const std::string moments = "1.0 -1.0\n 0.5\n";
   const std::string second = " 2  1  3\n64 0 0 0 0\n -.64E+02\n" + occupancies;
@@ -165,7 +175,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "CHGCAR:12: the file ends after 3 of 11 atoms"},
         BadText{"NoGrid", structure, "CHGCAR: has no grid behind its atoms"},
         BadText{"ZeroGrid", structure + "2 0 3\n",
-                "CHGCAR:13: expected the three numbers of a grid, found '2 0 3'"},
+                "CHGCAR:13: expected the three numbers of a grid behind 3 atoms, found '2 0 3'"},
         BadText{"NegativeGrid", structure + "2 -1 3\n",
                 "CHGCAR:13: expected the three numbers of a grid"},
         BadText{"HugeGrid", structure + "10000 10000 10000\n1 2\n", "CHGCAR: samples, 10000 x"},

@@ -304,7 +304,7 @@ INSTANTIATE_TEST_SUITE_P(
                     "<PointData><DataArray type=\"Int8\" Name=\"f\" format=\"binary\">Zm9$"
                     "</DataArray></PointData></Piece></ImageData></VTKFile>",
                 "a.vti:5: array 'f': is no good base64"},
-        BadText{"NoBlocks", blocks({0, 48, 0}, zeros), "array 'f': has no blocks"},
+        BadText{"NoBlocks", blocks({0, 48, 0}, zeros), "array 'f': holds 0 bytes; expected 48"},
         BadText{"ManyBlocks", blocks({4e9, 4e9, 0, 1, 1}, zeros),
                 "array 'f': holds 16000000000000000000 bytes; expected 48"},
         BadText{"EmptyBlocks", blocks({4e9, 0, 48, 1, 1}, zeros), "array 'f': has no blocks"},
@@ -328,7 +328,10 @@ TEST(Vti, ToldTheWrongHeaderTypeIsRefused) {
     const std::string right = header_bytes == 8 ? "UInt64" : "UInt32";
     return text.replace(text.find(right), 6, header_bytes == 8 ? "UInt32" : "UInt64");
   };
-  const std::string bytes = scalar_bytes<float>(numbers, false);
+  // (zeros at the end are no padding)
+  std::vector<double> values = numbers;
+  values.back() = 0;
+  const std::string bytes = scalar_bytes<float>(values, false);
   for (const int header_bytes : {4, 8}) {
     for (const bool base64 : {false, true}) {
       const Storage storage{.header_bytes = header_bytes, .base64 = base64};
@@ -342,6 +345,23 @@ TEST(Vti, ToldTheWrongHeaderTypeIsRefused) {
       const std::string inside = inline_file(storage, "Float32", bytes);
       EXPECT_EQ(grid_error("a.vti", inside), "");
       EXPECT_THAT(grid_error("a.vti", replaced(inside, header_bytes)), HasSubstr(message));
+    }
+  }
+}
+
+// Numbers of the other width that make no sense.
+TEST(Vti, NamesTheHeaderTypeThatWouldFit) {
+  for (const std::size_t block_bytes : {std::size_t{0}, std::size_t{16}}) {
+    for (const int header_bytes : {4, 8}) {
+      const Storage storage{.header_bytes = header_bytes, .block_bytes = block_bytes};
+      std::vector<double> values = numbers;
+      values[0] = 1;
+      std::string text = appended_file(storage, "Float32", scalar_bytes<float>(values, false));
+      const std::string right = header_bytes == 8 ? "UInt64" : "UInt32";
+      text.replace(text.find(right), 6, header_bytes == 8 ? "UInt32" : "UInt64");
+      EXPECT_THAT(grid_error("a.vti", text),
+                  HasSubstr(fmt::format("with header_type=\"{}\" it", right)))
+          << block_bytes;
     }
   }
 }

@@ -356,6 +356,39 @@ TEST(GridIsosurface, IsABoxWhereTheLevelEnclosesAll) {
   }
 }
 
+// On a face what is farther from 0 is seen, in whatever order the scene has the levels.
+TEST(GridIsosurface, ShowsTheInnermostOfSeveralCaps) {
+  auto grid = std::make_shared<Grid>();
+  grid->name = "full";
+  grid->dims = {9, 9, 9};
+  grid->origin = {-4, -4, -4};
+  grid->steps = {Vector3d{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  grid->values.assign(729, 2);
+  Case c;
+  FieldSource source;
+  source.grid = c.grid = grid;
+  c.kernels = build_kernel_set({}, {source});
+  c.fields = make_grid_fields({source});
+  set_units(c.fields, c.kernels);
+  const double scale = c.kernels.length_scale, side = 4 * scale;
+  FrameContext context;
+  context.kernels = &c.kernels;
+  Camera camera;
+  camera.eye = {0, 0, 20};
+  camera.target = {};
+  context.view = {
+      camera_axes(camera), Point3d{} + scale * (camera.eye - c.kernels.origin), {0, 0.5 * scale}};
+  context.box = {{-side, -side, -side}, {side, side, side}};
+  ResolvedScene scene;
+  for (const double value : {0.5, 1.5, 1.0})
+    scene.isosurfaces.push_back({0, value, 1, {{1, 1, 1}}});
+  const auto frame = make_isosurfaces(scene, context, c.fields, {}, {}, {}).frame;
+  std::vector<IsosurfaceHit> hits;
+  trace_isosurfaces(frame, {0, 0, 0.01, 0.01, 0, 0, 1, 1}, hits);
+  ASSERT_EQ(hits.size(), 1u);
+  EXPECT_EQ(hits[0].level, 1u);
+}
+
 TEST(GridIsosurface, HidesTheLightOfWhatIsWithin) {
   // A field that is the height along z above the grid's middle: level 1 is a plane.
   auto grid = std::make_shared<Grid>();

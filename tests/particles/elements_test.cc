@@ -34,6 +34,33 @@ TEST(Elements, KnowsTheValuesOfTheSource) {
   EXPECT_DOUBLE_EQ(find_element("Si")->mass, 28.085);
 }
 
+TEST(Elements, HaveVanDerWaalsRadii) {
+  const auto radius = [](const char* name) { return van_der_waals_radius(*find_element(name)); };
+  EXPECT_EQ(radius("H"), 1.20F);
+  EXPECT_EQ(radius("C"), 1.70F);
+  EXPECT_EQ(radius("Fe"), 2.44F);
+  EXPECT_EQ(radius("Cm"), 3.05F);
+  // No metal of the d and f blocks is smaller than carbon.
+  for (int number = 1; number <= 96; ++number) {
+    const Element& element = *element_by_number(number);
+    EXPECT_GT(van_der_waals_radius(element), 1) << element.symbol;
+    if ((number > 20 && number <= 30) || (number > 38 && number <= 48) ||
+        (number > 56 && number <= 80) || number > 88) {
+      EXPECT_GT(van_der_waals_radius(element), 2) << element.symbol;
+      EXPECT_TRUE(is_metal(element)) << element.symbol;
+    }
+  }
+}
+
+TEST(Elements, KnowsMetals) {
+  for (const char* name : {"Li", "Al", "Fe", "Sn", "U"}) {
+    EXPECT_TRUE(is_metal(*find_element(name))) << name;
+  }
+  for (const char* name : {"H", "C", "Si", "Ge", "Sb", "Te", "Xe"}) {
+    EXPECT_FALSE(is_metal(*find_element(name))) << name;
+  }
+}
+
 TEST(Elements, ReadsNamesWithCaseDigitsAndCharges) {
   EXPECT_EQ(symbol_of("SI"), "Si");
   EXPECT_EQ(symbol_of("si12"), "Si");

@@ -164,6 +164,25 @@ TEST(FitCamera, FillsTheImageWithABallWhoseBoxWouldNeedMoreRoom) {
   }
 }
 
+TEST(FitCamera, LooksFromTheSameSideHoweverLargeAllIs) {
+  const Camera usual = fit_camera({}, ball(100), 1);
+  const Vector3d direction = normalize(usual.eye - usual.target);
+  for (const double scale : {1e-20, 1e8, 1e16, 1e24}) {
+    auto points = ball(100);
+    for (VisibleSphere& point : points) point.center = Point3d{} + scale * Vector3d(point.center);
+    const Camera camera = fit_camera({}, points, 1);
+    EXPECT_LT(length(normalize(camera.eye - camera.target) - direction), 1e-6) << scale;
+  }
+}
+
+TEST(FitCamera, KeepsAwayFromAFewBallsBehindEachOther) {
+  const std::vector<VisibleSphere> two{{{0.4, 0.3, 1}, 0.3}, {{-0.4, -0.3, -1}, 0.3}};
+  const Camera camera = fit_camera({}, two, 1);
+  const double nearer = length(camera.eye - two[0].center),
+               farther = length(camera.eye - two[1].center);
+  EXPECT_GT(nearer / farther, 0.35);
+}
+
 TEST(FitCamera, HoldsWholeSpheres) {
   // A sphere of radius 1 at distance d fills the image where sin(fov / 2) = 1 / d.
   Scene scene;
@@ -274,7 +293,8 @@ double farthest_x(const std::vector<VisibleSphere>& spheres) {
 TEST(VisibleSpheres, HoldWhatAGridShows) {
   const FieldSource source = bell();
   const auto spheres = visible_spheres({}, {source});
-  // 85 % of a bell lie within 2.3 widths, where it is 0.07; it comes to three tenths of that at 2.78.
+  // 85 % of a bell lie within 2.3 widths, where it is 0.07; it comes to three tenths of that
+  // at 2.78.
   EXPECT_NEAR(farthest_x(spheres), 2 + 2.78 + 0.5, 0.5);
   for (const VisibleSphere& sphere : spheres) {
     EXPECT_GE(sphere.center.x, 0);
@@ -301,6 +321,38 @@ TEST(VisibleSpheres, HoldTheImageAtTheEndOfAGridThatGoesOn) {
   Field high;
   high.isosurfaces.push_back({0.5, {}, 1});  // does not come to the faces
   EXPECT_NEAR(farthest_x(visible_spheres({}, {source}, {}, {high})), 2 + 1.18 + 0.5, 0.5);
+}
+
+TEST(VisibleSpheres, AreThoseThatClipPlanesLeave) {
+  const FieldSource source = bell();
+  Field surface;
+  surface.isosurfaces.push_back({0.5, {}, 1});
+  const auto of_grid = visible_spheres({}, {source}, {}, {surface}, {}, {{{0, 2, 0}, 6}});
+  ASSERT_FALSE(of_grid.empty());
+  double highest = -1;
+  for (const VisibleSphere& sphere : of_grid) highest = std::max(highest, sphere.center.y);
+  EXPECT_NEAR(highest, 3, 1e-9) << "up to the plane";
+  // Lines are cut off where they cross it.
+  double farthest = -1;
+  for (const VisibleSphere& sphere :
+       visible_spheres({}, {source}, {}, {surface}, {}, {{{1, 0, 0}, 2.25}})) {
+    farthest = std::max(farthest, sphere.center.x);
+  }
+  EXPECT_NEAR(farthest, 2.25, 1e-9);
+  ParticleSet particles;
+  particles.x = {0, 1, 5};
+  particles.y = particles.z = {0, 0, 0};
+  GeometrySource balls;
+  balls.index = {0, 1, 2};
+  balls.radius = {1};
+  EXPECT_EQ(visible_spheres(particles, {}, balls, {}, {}, {{{1, 0, 0}, 0.5}}).size(), 1u);
+  // Of a field what a plane cuts in part is still to be seen.
+  FieldSource field;
+  field.index = {0, 1, 2};
+  field.radius = {1};
+  EXPECT_EQ(visible_spheres(particles, {field}, {}, {}, {}, {{{1, 0, 0}, 0.5}}).size(), 2u);
+  EXPECT_EQ(visible_spheres(particles, {}, balls, {}, {}, {{{1, 0, 0}, -5}}).size(), 3u)
+      << "nothing is left";
 }
 
 // Corners of one that shows nothing, with as many particles beside it as would make them strays.

@@ -83,6 +83,20 @@ TEST(GeometrySource, ColoursByCoordinatesUnlessAPropertyHasTheName) {
   EXPECT_THAT(by_property, ElementsAre(colors[2], colors[1], colors[1]));
 }
 
+TEST(GeometrySource, FillsInTheRangesOfColours) {
+  std::vector<Geometry> geometry(2);
+  geometry[0].color = ColorByProperty{"q"};
+  geometry[0].select.species = {"O", "H"};
+  fill_in_colors(water(), geometry);
+  using Range = std::pair<double, double>;
+  EXPECT_EQ(std::get<ColorByProperty>(geometry[0].color).range, Range(-1, 3));
+  geometry[0].color = ColorByProperty{"size", "heat", Range(7, 8)};
+  geometry[1].color = ColorByProperty{"size"};  // NaN is none
+  fill_in_colors(water(), geometry);
+  EXPECT_EQ(std::get<ColorByProperty>(geometry[0].color).range, Range(7, 8));
+  EXPECT_EQ(std::get<ColorByProperty>(geometry[1].color).range, Range(0, 2));
+}
+
 TEST(GeometrySource, LeavesBondsByDistanceToTheTreeAndDrawsJoints) {
   Warnings warnings;
   const GeometrySource source = source_of(
@@ -142,6 +156,15 @@ TEST(GeometrySource, SaysWhereNoBondIsBetweenSelectedParticles) {
   Warnings warnings;
   EXPECT_EQ(make_geometry_source(particles, {sticks}, warnings).bonds, particles.bonds);
   EXPECT_THAT(warnings.lines(), ElementsAre());
+  EXPECT_THAT(make_geometry_source(particles, {sticks}, warnings).bonds_among, ElementsAre());
+  // Where there are others, they are for distances to tell.
+  particles.bonds_are_partial = true;
+  EXPECT_EQ(make_geometry_source(particles, {sticks}, warnings).bonds, particles.bonds);
+  EXPECT_THAT(make_geometry_source(particles, {sticks}, warnings).bonds_among,
+              ElementsAre(true, true, true, true));
+  sticks.bonds = BondSource::file;
+  EXPECT_THAT(make_geometry_source(particles, {sticks}, warnings).bonds_among, ElementsAre());
+  particles.bonds_are_partial = false;
   sticks.select.index = {{1, 2}};
   EXPECT_THAT(make_geometry_source(particles, {sticks}, warnings).bonds, ElementsAre());
   EXPECT_THAT(warnings.lines(),

@@ -84,6 +84,17 @@ TEST(ExpandFields, ShowsOneOfSeveralGridsOfBothSigns) {
   EXPECT_THAT(visible(named), testing::ElementsAre(true, true));
 }
 
+// It ends where the grid does: at half of its value.
+TEST(ExpandFields, FitsTheSurfaceOfAGridOfOneValue) {
+  Scene scene = scene_of_grids();
+  scene.fields[0].fitted_isosurfaces = true;
+  const auto fields =
+      expand_fields(scene, {}, {loaded("seven", {7, 7, 7}), loaded("hole", {-2, -2})});
+  ASSERT_EQ(fields.size(), 2u);
+  EXPECT_EQ(fields[0].isosurfaces[0].value, 3.5);
+  EXPECT_EQ(fields[1].isosurfaces[0].value, -1);
+}
+
 TEST(ExpandFields, FitsNoIsosurfaceThatASignDoesNotReach) {
   Scene scene = scene_of_grids();
   scene.fields[0].fitted_isosurfaces = true;
