@@ -66,6 +66,12 @@ HWY_INLINE V below(D d, float reach, V q) {
 struct SumShape {
   static constexpr bool is_product = false;
   static constexpr float distance_scale = 1;
+
+  /// What at() takes in place of q_sq: more, in shapes that wait long for what they find first.
+  template <bool kSteepness, class D, class V = hn::Vec<D>>
+  HWY_INLINE V find(D, V q_sq) const {
+    return q_sq;
+  }
 };
 
 struct CubicSplineShape : SumShape {
@@ -154,77 +160,136 @@ struct WendlandC6Shape : SumShape {
   }
 };
 
-/// Where in a table some distances are: the numbers of their segments and the places within them.
+/// Where in a table some distances are.
 template <class D, class V = hn::Vec<D>>
 struct TablePlaces {
-  hn::Vec<hn::RebindToSigned<D>> segment;
-  V t;
-  V steepness;         ///< that of a cubic whose slope within the segment is -1
-  hn::Mask<D> inside;  ///< of the support
+  hn::Vec<hn::RebindToUnsigned<D>> bits;  ///< the lowest 22 of them number the segments
+  V t;                                    ///< from the segments' middles
+  V steepness;                            ///< where the slope by the place is 1
+  hn::Mask<D> inside;                     ///< of the support
+
+  static constexpr std::uint32_t number_mask = (1u << 22) - 1;
 };
 
-template <bool kOfSquares, class D, class V = hn::Vec<D>>
-HWY_INLINE TablePlaces<D> find_places(D d, const RadialTable& table, V q_sq) {
-  V q = q_sq, steepness = hn::Set(d, 2 * table.segments_per_unit);
-  if constexpr (!kOfSquares) {
-    const V inverse = inverse_sqrt(d, q_sq);
-    q = hn::Mul(q_sq, inverse);
-    steepness = hn::Mul(hn::Set(d, table.segments_per_unit), inverse);
+template <bool kSteepness, class D, class V = hn::Vec<D>>
+HWY_INLINE TablePlaces<D> find_places(D d, const RadialTable& table, const TableSegments& segments,
+                                      V q_sq) {
+  TablePlaces<D> out;
+  V q = q_sq;
+  if (segments.of_squares) {
+    out.steepness = hn::Set(d, -2 * segments.per_unit);
+  } else {
+    // The processor's own square root and division take long, but run beside all other operations,
+    // whose place Newton's steps would take.
+    q = hn::Sqrt(q_sq);
+    if constexpr (kSteepness) {
+      out.steepness = hn::Div(hn::Set(d, -segments.per_unit), hn::Max(q, hn::Set(d, 1e-15f)));
+    }
   }
-  const V place = hn::Mul(q, hn::Set(d, table.segments_per_unit));
-  const V number = hn::Min(hn::Floor(place), hn::Set(d, table.last_segment));
-  return {hn::ConvertTo(hn::RebindToSigned<D>(), number), hn::Sub(place, number), steepness,
-          hn::Le(q_sq, hn::Set(d, table.support_sq))};
+  // Relative to the middle of segment 0. A number this large has no fraction: it is rounded, and
+  // its bits are an integer's.
+  const V place = hn::MulAdd(q, hn::Set(d, segments.per_unit), hn::Set(d, -0.5f));
+  const V large = hn::Set(d, 0x1.8p23f);
+  const V rounded = hn::Add(hn::Min(place, hn::Set(d, segments.last)), large);
+  out.bits = hn::BitCast(hn::RebindToUnsigned<D>(), rounded);
+  out.t = hn::Sub(place, hn::Sub(rounded, large));
+  out.inside = hn::Le(q_sq, hn::Set(d, table.support_sq));
+  return out;
 }
 
-/// The cubics with coefficients c at their places.
-template <bool kSteepness, class D, class V = hn::Vec<D>>
-HWY_INLINE RadialLanes<V> cubic_at(D d, const TablePlaces<D>& places,
-                                   const std::array<V, RadialTable::record_size>& c) {
+/// Polynomials of which coefficient(k) gives the k-th coefficients, at their places.
+template <bool kSteepness, std::size_t kDegree, class D, class Coefficient, class V = hn::Vec<D>>
+HWY_INLINE RadialLanes<V> polynomials_at(D, const TablePlaces<D>& places,
+                                         Coefficient&& coefficient) {
   const V t = places.t;
-  const V value = hn::MulAdd(t, hn::MulAdd(t, hn::MulAdd(t, c[3], c[2]), c[1]), c[0]);
+  V slope = coefficient(kDegree);
+  V value = hn::MulAdd(slope, t, coefficient(kDegree - 1));
+  unroll<kDegree - 1>([&](std::size_t i) MOTES_INLINE HWY_ATTR {
+    if constexpr (kSteepness) slope = hn::MulAdd(slope, t, value);
+    value = hn::MulAdd(value, t, coefficient(kDegree - 2 - i));
+  });
   RadialLanes<V> phi{hn::IfThenElseZero(places.inside, value), t};
   if constexpr (kSteepness) {
-    const V twice_c2 = hn::Add(c[2], c[2]), thrice_c3 = hn::Mul(hn::Set(d, -3.0f), c[3]);
-    const V downwards = hn::MulSub(t, hn::MulSub(t, thrice_c3, twice_c2), c[1]);
-    phi.steepness = hn::IfThenElseZero(places.inside, hn::Mul(downwards, places.steepness));
+    phi.steepness = hn::IfThenElseZero(places.inside, hn::Mul(slope, places.steepness));
   }
   return phi;
 }
 
+/// A table's own steps, of which each lane loads its record.
 struct TabulatedShape : SumShape {
   const RadialTable* table;
 
   template <bool kSteepness, class D, class V = hn::Vec<D>>
-  HWY_INLINE RadialLanes<V> at(D d, V q_sq) const {
-    const TablePlaces<D> places = table->of_squares ? find_places<true>(d, *table, q_sq)
-                                                    : find_places<false>(d, *table, q_sq);
-    const hn::RebindToSigned<D> di;
-    alignas(64) std::int32_t offset[max_lanes];
-    hn::Store(hn::ShiftLeft<2>(places.segment), di, offset);
+  HWY_INLINE TablePlaces<D> find(D d, V q_sq) const {
+    return find_places<kSteepness>(d, *table, table->steps, q_sq);
+  }
+
+  template <bool kSteepness, class D, class V = hn::Vec<D>>
+  HWY_INLINE RadialLanes<V> at(D d, const TablePlaces<D>& places) const {
+    static_assert(RadialTable::record_size == 4);
+    const hn::RebindToUnsigned<D> du;
+    const auto number = hn::And(places.bits, hn::Set(du, TablePlaces<D>::number_mask));
+    std::size_t offset[hn::MaxLanes(D())];
+    extract_numbers(du, hn::ShiftLeft<2>(number), offset);
     std::array<V, RadialTable::record_size> c;
-    load_fours(d, table->coefficients.data(), offset, c);
-    return cubic_at<kSteepness>(d, places, c);
+    load_fours(d, table->records.data(), offset, c);
+    return polynomials_at<kSteepness, 3>(d, places, [&](std::size_t k) { return c[k]; });
+  }
+  template <bool kSteepness, class D, class V = hn::Vec<D>>
+  HWY_INLINE RadialLanes<V> at(D d, V q_sq) const {
+    return at<kSteepness>(d, find<kSteepness>(d, q_sq));
   }
 };
 
+#if HWY_TARGET <= HWY_AVX2
+/// A smooth table: a permutation of a register finds a coefficient.
+struct SmoothTableShape : SumShape {
+  const RadialTable* table;
+  Lanes coefficients[RadialTable::smooth_degree + 1];
+
+  explicit SmoothTableShape(const RadialTable& from) : table(&from) {
+    static_assert(RadialTable::smooth_row >= num_lanes);
+    for (std::size_t k = 0; k <= RadialTable::smooth_degree; ++k) {
+      coefficients[k] = hn::Load(LaneTag(), from.rows.data() + RadialTable::smooth_row * k);
+    }
+  }
+
+  template <bool kSteepness, class D, class V = hn::Vec<D>>
+  HWY_INLINE RadialLanes<V> at(D d, V q_sq) const {
+    const auto places = find_places<kSteepness>(d, *table, table->smooth, q_sq);
+    const auto look_up = [&](std::size_t k) MOTES_INLINE HWY_ATTR {
+      // Permutations take no more of the bits than it takes to tell the lanes apart.
+      if constexpr (hn::MaxLanes(D()) == 16) {
+        return V{_mm512_permutexvar_ps(places.bits.raw, coefficients[k].raw)};
+      } else if constexpr (num_lanes == 16) {
+        const V lower = hn::LowerHalf(d, coefficients[k]);
+        return V{_mm256_permutevar8x32_ps(lower.raw, places.bits.raw)};
+      } else {
+        return V{_mm256_permutevar8x32_ps(coefficients[k].raw, places.bits.raw)};
+      }
+    };
+    return polynomials_at<kSteepness, RadialTable::smooth_degree>(d, places, look_up);
+  }
+};
+#endif
+
 #if HWY_TARGET <= HWY_AVX3
-/// A table of few segments: permutations of two registers find a coefficient.
-template <bool kOfSquares>
-struct SmallTableShape : SumShape {
-  static constexpr int pairs = kOfSquares ? 2 : 1;
-  static_assert(RadialTable::few == 32 && RadialTable::few_of_squares == 64);
+/// A table's own steps, up to 32 * kPairs: permutations of pairs of registers find a coefficient.
+template <std::size_t kPairs>
+struct ShortTableShape : SumShape {
+  static constexpr std::size_t most = 32 * kPairs;
+  static_assert(kPairs == 1 || kPairs == 2);
   const RadialTable* table;
   /// By coefficient, 16 segments each.
-  __m512 coefficients[RadialTable::record_size][2 * pairs];
+  __m512 coefficients[RadialTable::record_size][2 * kPairs];
 
-  explicit SmallTableShape(const RadialTable& from) : table(&from) {
-    alignas(64) float c[RadialTable::record_size][32 * pairs] = {};
-    for (std::size_t i = 0; i < from.coefficients.size(); ++i) {
-      c[i % RadialTable::record_size][i / RadialTable::record_size] = from.coefficients[i];
+  explicit ShortTableShape(const RadialTable& from) : table(&from) {
+    alignas(64) float c[RadialTable::record_size][most] = {};
+    for (std::size_t i = 0; i < from.records.size(); ++i) {
+      c[i % RadialTable::record_size][i / RadialTable::record_size] = from.records[i];
     }
     for (std::size_t k = 0; k < RadialTable::record_size; ++k) {
-      for (std::size_t i = 0; i < 2 * pairs; ++i) {
+      for (std::size_t i = 0; i < 2 * kPairs; ++i) {
         coefficients[k][i] = _mm512_load_ps(c[k] + 16 * i);
       }
     }
@@ -232,13 +297,13 @@ struct SmallTableShape : SumShape {
 
   template <bool kSteepness, class D, class V = hn::Vec<D>>
   HWY_INLINE RadialLanes<V> at(D d, V q_sq) const {
-    const TablePlaces<D> places = find_places<kOfSquares>(d, *table, q_sq);
-    const __m512i number = widened(places.segment.raw);
-    const __mmask16 upper = _mm512_cmpge_epi32_mask(number, _mm512_set1_epi32(32));
-    const auto look_up = [&](int k) MOTES_INLINE HWY_ATTR {
+    const auto places = find_places<kSteepness>(d, *table, table->steps, q_sq);
+    const __m512i number = widened(places.bits.raw);
+    const __mmask16 upper = _mm512_test_epi32_mask(number, _mm512_set1_epi32(32));
+    const auto look_up = [&](std::size_t k) MOTES_INLINE HWY_ATTR {
       const __m512* const c = coefficients[k];
       __m512 found = _mm512_permutex2var_ps(c[0], number, c[1]);
-      if constexpr (kOfSquares) {
+      if constexpr (kPairs == 2) {
         found = _mm512_mask_mov_ps(found, upper, _mm512_permutex2var_ps(c[2], number, c[3]));
       }
       if constexpr (hn::MaxLanes(D()) == 16) {
@@ -247,7 +312,7 @@ struct SmallTableShape : SumShape {
         return V{_mm512_castps512_ps256(found)};
       }
     };
-    return cubic_at<kSteepness>(d, places, {look_up(0), look_up(1), look_up(2), look_up(3)});
+    return polynomials_at<kSteepness, 3>(d, places, look_up);
   }
 
  private:
@@ -308,11 +373,12 @@ HWY_INLINE void with_shape(const SamplingConstants& constants, std::size_t f, Us
     case KernelType::wendland_c6:
       return use(WendlandC6Shape{});
     case KernelType::tabulated:
+#if HWY_TARGET <= HWY_AVX2
+      if (field.table.is_smooth()) return use(SmoothTableShape(field.table));
+#endif
 #if HWY_TARGET <= HWY_AVX3
-      if (field.table.has_few()) {
-        return field.table.of_squares ? use(SmallTableShape<true>(field.table))
-                                      : use(SmallTableShape<false>(field.table));
-      }
+      if (field.table.num_steps() <= 32) return use(ShortTableShape<1>(field.table));
+      if (field.table.num_steps() <= 64) return use(ShortTableShape<2>(field.table));
 #endif
       return use(TabulatedShape{{}, &field.table});
   }

@@ -150,6 +150,35 @@ struct GradientSlopes {
   V x, y, z;
 };
 
+/// Adds a kernel's gradient, its slopes times `steepness`, to channels 1 to 3.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE void add_gradient(D d, V steepness, const GradientSlopes<V>& slopes, float* samples,
+                             int channel_floats) {
+  const auto add = [&](int channel, V slope) MOTES_INLINE HWY_ATTR {
+    float* const gradient = samples + channel * channel_floats;
+    hn::Store(hn::MulAdd(steepness, slope, hn::Load(d, gradient)), d, gradient);
+  };
+  add(1, slopes.x);
+  add(2, slopes.y);
+  add(3, slopes.z);
+}
+
+/// Adds a kernel that is no product to samples of a field, as add_to_samples() does: `phi` is its
+/// shape there.
+template <class C, class D, class V = hn::Vec<D>>
+HWY_INLINE void add_radial(D d, const RadialLanes<V>& phi, V height,
+                           const GradientSlopes<V>& slopes, float* samples, int channel_floats) {
+  hn::Store(hn::MulAdd(height, phi.value, hn::Load(d, samples)), d, samples);
+  if constexpr (C::gradients) {
+    add_gradient(d, hn::Mul(height, phi.steepness), slopes, samples, channel_floats);
+  }
+  if constexpr (C::absolute) {
+    float* const absolute = samples + 4 * channel_floats;
+    const V magnitude = hn::Abs(hn::Mul(height, phi.value));
+    hn::Store(hn::Add(magnitude, hn::Load(d, absolute)), d, absolute);
+  }
+}
+
 /// Adds a kernel to samples of a field: channel 0 at `samples`, each further one `channel_floats`
 /// behind. `column` and `row` are the samples' factors, `height` is as height_of(). Returns how
 /// many samples lie inside of the support, if C::count.
@@ -157,35 +186,23 @@ template <class C, class D, class V = hn::Vec<D>>
 HWY_INLINE std::uint64_t add_to_samples(D d, const typename C::Shape& shape, V column, V row,
                                         V height, const GradientSlopes<V>& slopes, float* samples,
                                         int channel_floats) {
-  const auto add_gradient = [&](V steepness) MOTES_INLINE HWY_ATTR {
-    const auto add = [&](int channel, V slope) MOTES_INLINE HWY_ATTR {
-      float* const gradient = samples + channel * channel_floats;
-      hn::Store(hn::MulAdd(steepness, slope, hn::Load(d, gradient)), d, gradient);
-    };
-    add(1, slopes.x);
-    add(2, slopes.y);
-    add(3, slopes.z);
-  };
-  float* const absolute = samples + 4 * channel_floats;
   if constexpr (C::Shape::is_product) {
     // The kernel ends where its value falls below that at the support radius: no distance is
     // needed.
     const V values = hn::Mul(column, row), magnitude = hn::Abs(values);
     const auto inside = hn::Ge(magnitude, height);
     hn::Store(add_inside(d, inside, values, hn::Load(d, samples)), d, samples);
-    if constexpr (C::gradients) add_gradient(hn::IfThenElseZero(inside, values));
+    if constexpr (C::gradients) {
+      add_gradient(d, hn::IfThenElseZero(inside, values), slopes, samples, channel_floats);
+    }
     if constexpr (C::absolute) {
+      float* const absolute = samples + 4 * channel_floats;
       hn::Store(add_inside(d, inside, magnitude, hn::Load(d, absolute)), d, absolute);
     }
     return C::count ? hn::CountTrue(d, inside) : 0;
   } else {
     const auto phi = shape.template at<C::gradients>(d, hn::Add(column, row));
-    hn::Store(hn::MulAdd(height, phi.value, hn::Load(d, samples)), d, samples);
-    if constexpr (C::gradients) add_gradient(hn::Mul(height, phi.steepness));
-    if constexpr (C::absolute) {
-      const V magnitude = hn::Abs(hn::Mul(height, phi.value));
-      hn::Store(hn::Add(magnitude, hn::Load(d, absolute)), d, absolute);
-    }
+    add_radial<C>(d, phi, height, slopes, samples, channel_floats);
     return 0;
   }
 }
@@ -205,10 +222,28 @@ HWY_INLINE std::uint64_t add_to_group(LaneTag d, const typename C::Shape& shape,
     slopes.x = hn::LoadDup128(d, factors.column_slope + AreaBuffer::group_size * column);
     slopes.z = rows.slope_z;
   }
-  for (int v = 0; v < group_blocks; ++v, samples += block_floats) {
-    if constexpr (C::gradients) slopes.y = rows.slope[v];
-    inside_support +=
-        add_to_samples<C>(d, shape, columns, rows.row[v], rows.height, slopes, samples, num_lanes);
+  const auto each_block = [&](auto&& add) MOTES_INLINE HWY_ATTR {
+    float* block = samples;
+    for (int v = 0; v < group_blocks; ++v, block += block_floats) {
+      if constexpr (C::gradients) slopes.y = rows.slope[v];
+      add(v, block);
+    }
+  };
+  if constexpr (C::Shape::is_product) {
+    each_block([&](int v, float* block) MOTES_INLINE HWY_ATTR {
+      inside_support +=
+          add_to_samples<C>(d, shape, columns, rows.row[v], rows.height, slopes, block, num_lanes);
+    });
+  } else {
+    // What takes long to find is found for all blocks before it is waited for.
+    decltype(shape.template find<C::gradients>(d, columns)) found[group_blocks];
+    for (int v = 0; v < group_blocks; ++v) {
+      found[v] = shape.template find<C::gradients>(d, hn::Add(columns, rows.row[v]));
+    }
+    each_block([&](int v, float* block) MOTES_INLINE HWY_ATTR {
+      const auto phi = shape.template at<C::gradients>(d, found[v]);
+      add_radial<C>(d, phi, rows.height, slopes, block, num_lanes);
+    });
   }
   return inside_support;
 }

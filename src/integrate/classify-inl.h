@@ -197,10 +197,10 @@ HWY_INLINE Lanes read_table(LaneTag d, const Classifier& c, int i, const TablePl
 /// Red, green, blue and extinction times step at a place of the table.
 HWY_INLINE std::array<Lanes, 4> read_record(LaneTag d, const Classifier& c,
                                             const TablePlace& place) {
-  const hn::RebindToSigned<LaneTag> di;
+  const hn::RebindToUnsigned<LaneTag> du;
   static_assert(Classifier::record_size == 8);
-  alignas(64) std::int32_t offset[max_lanes];
-  hn::Store(hn::ShiftLeft<3>(place.segment), di, offset);
+  std::size_t offset[num_lanes];
+  extract_numbers(du, hn::BitCast(du, hn::ShiftLeft<3>(place.segment)), offset);
   std::array<Lanes, 4> base, rise;
   load_fours(d, c.records.data(), offset, base);
   load_fours(d, c.records.data() + 4, offset, rise);

@@ -198,8 +198,7 @@ class ArrayReader {
     const std::string_view bytes = at_most(width + other + value_bytes(), storage);
     const auto ends_behind = [&](std::size_t front) {
       if (bytes.size() < front + value_bytes()) return false;
-      const std::string_view behind = bytes.substr(front + value_bytes());
-      return std::all_of(behind.begin(), behind.end(), is_blank);
+      return bytes.find_first_not_of(" \t\r\n", front + value_bytes()) == std::string_view::npos;
     };
     if (ends_behind(width) || !ends_behind(other)) return;
     if (header_number(bytes, 0, {header_.big_endian, other}) != value_bytes()) return;

@@ -34,10 +34,28 @@ HWY_INLINE void transpose_fours(D d, V& v0, V& v1, V& v2, V& v3) {
   v3 = hn::BitCast(d, hn::InterleaveUpper(dw, c, e));
 }
 
+/// A vector's numbers, by way of registers: through memory they take longer and more loads.
+template <class DU>
+HWY_INLINE void extract_numbers(DU, hn::Vec<DU> numbers, std::size_t* out) {
+  constexpr std::size_t lanes = hn::MaxLanes(DU());
+  if constexpr (lanes > 4) {
+    const hn::Half<DU> half;
+    extract_numbers(half, hn::LowerHalf(half, numbers), out);
+    extract_numbers(half, hn::UpperHalf(half, numbers), out + lanes / 2);
+  } else {
+    const auto pairs = hn::BitCast(hn::RepartitionToWide<DU>(), numbers);
+    for (std::size_t i = 0; i < 2; ++i) {
+      const std::uint64_t pair = hn::ExtractLane(pairs, i);
+      out[2 * i] = static_cast<std::uint32_t>(pair);
+      out[2 * i + 1] = pair >> 32;
+    }
+  }
+}
+
 /// Four floats of each lane: lane l's begin at from + offset[l], a multiple of four. Vector i gets
 /// the i-th.
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE void load_fours(D d, const float* from, const std::int32_t* offset,
+HWY_INLINE void load_fours(D d, const float* from, const std::size_t* offset,
                            std::array<V, 4>& out) {
   const hn::FixedTag<float, 4> four;
   for (std::size_t i = 0; i < 4; ++i) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <vector>
 
 namespace motes {
 namespace {
@@ -23,6 +24,9 @@ Kernel tabulated(int steps, double support, F&& value) {
 
 double bell(double q) { return std::exp(-0.5 * q * q); }
 
+/// Like |q|^3 at 0, which has no third derivative in q^2 there.
+double with_a_cube(double q) { return 1 - 3 * q * q + 2 * q * q * q; }
+
 Kernel rough_table(int steps) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> value(0.5, 1);
@@ -34,75 +38,104 @@ struct Errors {
   double value = 0, slope = 0;
 };
 
-Errors errors_of(const RadialTable& table, const Kernel& kernel) {
+/// `coefficient(k, i)` is the k-th one, of `count`, of segment i.
+template <class F>
+Errors errors_of(const TableSegments& segments, std::size_t count, F&& coefficient,
+                 const Kernel& kernel) {
   Errors errors;
   double largest = 0, steepest = 0;
   constexpr int places = 10000;
   for (int k = 0; k < places; ++k) {
     const double q = k * kernel.support() / places;
-    const double scale = static_cast<double>(table.segments_per_unit);
-    const double place = (table.of_squares ? q * q : q) * scale;
-    const auto i =
-        static_cast<std::size_t>(std::min(place, static_cast<double>(table.last_segment)));
-    const double t = place - static_cast<double>(i);
-    const float* const c = table.coefficients.data() + RadialTable::record_size * i;
-    const double c0 = c[0], c1 = c[1], c2 = c[2], c3 = c[3];
-    const double by_place = c1 + t * (2 * c2 + 3 * t * c3);
+    const double scale = static_cast<double>(segments.per_unit);
+    const double place = (segments.of_squares ? q * q : q) * scale;
+    const double i = std::floor(std::min(place, static_cast<double>(segments.last)));
+    const double t = place - i - 0.5;
+    double value = 0, by_place = 0;
+    for (std::size_t c = count; c-- > 0;) {
+      by_place = by_place * t + value;
+      value = value * t + static_cast<double>(coefficient(c, static_cast<std::size_t>(i)));
+    }
+    const double by_distance = by_place * scale * (segments.of_squares ? 2 * q : 1);
     const RadialValue truth = evaluate(kernel, q);
     largest = std::max(largest, std::abs(truth.value));
     steepest = std::max(steepest, std::abs(truth.steepness * q));
-    errors.value =
-        std::max(errors.value, std::abs(c0 + t * (c1 + t * (c2 + t * c3)) - truth.value));
-    errors.slope =
-        std::max(errors.slope,
-                 std::abs(by_place * scale * (table.of_squares ? 2 * q : 1) + truth.steepness * q));
+    errors.value = std::max(errors.value, std::abs(value - truth.value));
+    errors.slope = std::max(errors.slope, std::abs(by_distance + truth.steepness * q));
   }
   return {errors.value / largest, errors.slope / steepest};
 }
 
-void expect_same_curve(const RadialTable& table, const Kernel& kernel) {
-  const Errors errors = errors_of(table, kernel);
+void expect_small(const Errors& errors) {
   EXPECT_LT(errors.value, 2e-6);
   EXPECT_LT(errors.slope, 2e-5);
 }
 
+void expect_steps(const RadialTable& table, const Kernel& kernel) {
+  ASSERT_EQ(table.num_steps(), kernel.shape.profile.values.size() - 1);
+  expect_small(errors_of(
+      table.steps, RadialTable::record_size,
+      [&](std::size_t k, std::size_t i) { return table.records[RadialTable::record_size * i + k]; },
+      kernel));
+}
+
+void expect_smooth(const RadialTable& table, const Kernel& kernel) {
+  ASSERT_TRUE(table.is_smooth());
+  ASSERT_EQ(table.rows.size(), RadialTable::smooth_row * (RadialTable::smooth_degree + 1));
+  for (const std::size_t copy : {std::size_t{0}, RadialTable::smooth_segments}) {
+    expect_small(errors_of(
+        table.smooth, RadialTable::smooth_degree + 1,
+        [&](std::size_t k, std::size_t i) {
+          return table.rows[RadialTable::smooth_row * k + copy + i];
+        },
+        kernel));
+  }
+}
+
+TEST(RadialTable, HasTheStepsOfEveryTable) {
+  for (const int steps : {1, 7, 32, 64, 100}) {
+    SCOPED_TRACE(steps);
+    const Kernel kernel = rough_table(steps);
+    expect_steps(make_radial_table(kernel), kernel);
+  }
+  const Kernel kernel = tabulated(1000, 2.8, bell);
+  expect_steps(make_radial_table(kernel), kernel);
+}
+
 TEST(RadialTable, IsOfSquaresWhereTheCurveIsSmooth) {
   for (const int steps : {200, 256, 1000}) {
+    SCOPED_TRACE(steps);
     const Kernel kernel = tabulated(steps, 2.8, bell);
     const RadialTable table = make_radial_table(kernel);
-    EXPECT_TRUE(table.of_squares) << steps;
-    EXPECT_TRUE(table.has_few());
-    expect_same_curve(table, kernel);
+    expect_smooth(table, kernel);
+    EXPECT_TRUE(table.smooth.of_squares);
   }
 }
 
-TEST(RadialTable, KeepsTheStepsOfShortTables) {
-  for (const int steps : {1, 7, 32}) {
-    const Kernel kernel = rough_table(steps);
-    const RadialTable table = make_radial_table(kernel);
-    EXPECT_FALSE(table.of_squares) << steps;
-    EXPECT_TRUE(table.has_few());
-    EXPECT_EQ(table.coefficients.size(),
-              RadialTable::record_size * static_cast<std::size_t>(steps));
-    expect_same_curve(table, kernel);
-  }
-}
-
-TEST(RadialTable, KeepsTheStepsOfLongRoughTables) {
-  const Kernel kernel = rough_table(100);
-  const RadialTable table = make_radial_table(kernel);
-  EXPECT_FALSE(table.has_few());
-  EXPECT_EQ(table.coefficients.size(), RadialTable::record_size * 100);
-  expect_same_curve(table, kernel);
-}
-
-/// A curve like |q|^3 at 0 has no third derivative in q^2 there, a short one in q does.
 TEST(RadialTable, IsOfDistancesWhereTheseAreWhatTheCurveIsSmoothIn) {
-  const Kernel kernel = tabulated(2000, 1, [](double q) { return 1 - 3 * q * q + 2 * q * q * q; });
+  const Kernel kernel = tabulated(2000, 1, with_a_cube);
   const RadialTable table = make_radial_table(kernel);
-  EXPECT_FALSE(table.of_squares);
-  EXPECT_TRUE(table.has_few());
-  expect_same_curve(table, kernel);
+  expect_smooth(table, kernel);
+  EXPECT_FALSE(table.smooth.of_squares);
+}
+
+/// Of as many steps as there are segments, each step is a polynomial already.
+TEST(RadialTable, TakesStepsThatAreSegmentsForSmooth) {
+  for (const int steps : {1, 2, 4, 8}) {
+    SCOPED_TRACE(steps);
+    const Kernel kernel = rough_table(steps);
+    expect_smooth(make_radial_table(kernel), kernel);
+  }
+}
+
+TEST(RadialTable, DoesNotSmoothWhatIsRough) {
+  for (const int steps : {7, 9, 32, 100, 1000}) {
+    EXPECT_FALSE(make_radial_table(rough_table(steps)).is_smooth()) << steps;
+  }
+  // One value of a smooth curve off by 1e-4: of the steepest slope that is a hundredth.
+  Kernel kernel = tabulated(256, 2.8, bell);
+  kernel.shape.profile.values[100] += 1e-4;
+  EXPECT_FALSE(make_radial_table(kernel).is_smooth());
 }
 
 }  // namespace

@@ -143,6 +143,34 @@ TEST(Resample, IsTheReferenceAcrossBricks) {
   }
 }
 
+// Tables in every form that the engines take them in: polynomials in the squared distance and in
+// the distance, steps in registers and in memory.
+TEST(Resample, IsTheReferenceForEveryFormOfTables) {
+  const ParticleSet particles = random_particles(300, 10, 3);
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> noise(0.9, 1);
+  const auto bell = [](double q) { return std::exp(-4 * q * q); };
+  const auto cube = [](double q) { return 1 - 3 * q * q + 2 * q * q * q; };
+  const auto noisy = [&](double q) { return noise(random) * bell(q); };
+  const auto check = [&](int steps, auto&& value) {
+    Kernel kernel;
+    kernel.shape.type = KernelType::tabulated;
+    kernel.shape.profile.spacing = 2.5 / steps;
+    for (int i = 0; i <= steps; ++i)
+      kernel.shape.profile.values.push_back(value(double(i) / steps));
+    const FieldSource field = field_of(particles, kernel, 0.4f);
+    const Bounds3d box = build_kernel_set(particles, {field}).box();
+    const int checked = expect_truth(particles, {field}, lattice_of_counts(box, {47, 71, 33}), 31);
+    EXPECT_GT(checked, 300 * static_cast<int>(instruction_sets().size()));
+  };
+  check(256, bell);
+  check(2000, cube);
+  for (const int steps : {20, 32, 33, 50, 64, 65, 256}) {
+    SCOPED_TRACE(steps);
+    check(steps, noisy);
+  }
+}
+
 // A lattice so large that its bricks are the larger ones, with a few particles.
 TEST(Resample, IsTheReferenceOnALargeLattice) {
   const ParticleSet particles = random_particles(20, 10, 2);

@@ -85,13 +85,13 @@ TEST(GeometrySource, ColoursByCoordinatesUnlessAPropertyHasTheName) {
 
 TEST(GeometrySource, FillsInTheRangesOfColours) {
   std::vector<Geometry> geometry(2);
-  geometry[0].color = ColorByProperty{"q"};
+  geometry[0].color = ColorByProperty{"q", "viridis", {}};
   geometry[0].select.species = {"O", "H"};
   fill_in_colors(water(), geometry);
   using Range = std::pair<double, double>;
   EXPECT_EQ(std::get<ColorByProperty>(geometry[0].color).range, Range(-1, 3));
   geometry[0].color = ColorByProperty{"size", "heat", Range(7, 8)};
-  geometry[1].color = ColorByProperty{"size"};  // NaN is none
+  geometry[1].color = ColorByProperty{"size", "viridis", {}};  // NaN is none
   fill_in_colors(water(), geometry);
   EXPECT_EQ(std::get<ColorByProperty>(geometry[0].color).range, Range(7, 8));
   EXPECT_EQ(std::get<ColorByProperty>(geometry[1].color).range, Range(0, 2));

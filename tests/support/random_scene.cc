@@ -85,7 +85,7 @@ KernelShape draw_shape(Draw& draw) {
   shape.type = static_cast<KernelType>(1 + draw.below(6));
   if (shape.type != KernelType::tabulated) return shape;
   const bool smooth = draw.chance(0.3), negative = draw.chance(0.3), ends = draw.chance(0.5);
-  const int num_points = smooth ? 257 : draw.chance(0.8) ? 2 + draw.below(9) : 70;
+  const int num_points = smooth ? 257 : draw.chance(0.8) ? 2 + draw.below(9) : ends ? 40 : 70;
   shape.profile.spacing = draw.uniform(1.5, 3) / num_points;
   for (int i = 0; i < num_points; ++i) {
     const double q = static_cast<double>(i) / (num_points - 1), left = 1 - q;

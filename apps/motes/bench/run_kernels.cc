@@ -6,6 +6,7 @@
 #include <deque>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <random>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,27 +25,34 @@ struct Shape {
   std::string_view name;
   KernelType type;
   int table_steps = 0;
+  double noise = 0;  ///< standard deviation of a table's values, over these
 };
 
-/// The Gaussian first. Of tables those of up to 32 steps fit into registers where these are wide.
+/// The Gaussian first. Noise makes a table one of measured values, which no smooth curve stands
+/// for.
 constexpr Shape shapes[] = {{"gaussian", KernelType::gaussian},
                             {"cubic_spline", KernelType::cubic_spline},
                             {"quintic_spline", KernelType::quintic_spline},
                             {"wendland_c2", KernelType::wendland_c2},
                             {"wendland_c4", KernelType::wendland_c4},
                             {"wendland_c6", KernelType::wendland_c6},
-                            {"table of 32", KernelType::tabulated, 32},
-                            {"table of 256", KernelType::tabulated, 256}};
+                            {"table of 256", KernelType::tabulated, 256},
+                            {"noisy of 32", KernelType::tabulated, 32, 0.01},
+                            {"noisy of 256", KernelType::tabulated, 256, 0.01}};
 
-/// `gaussian` in another shape; as a table, its own curve.
+/// `gaussian` in another shape; as a table, its own curve, or that with noise.
 Kernel in_shape(const Kernel& gaussian, const Shape& shape) {
   Kernel kernel = gaussian;
   kernel.shape.type = shape.type;
   if (shape.type != KernelType::tabulated) return kernel;
   kernel.shape.profile.spacing = gaussian.support_factor / shape.table_steps;
+  std::mt19937 random(1);
   for (int i = 0; i <= shape.table_steps; ++i) {
-    kernel.shape.profile.values.push_back(
-        evaluate(gaussian, i * kernel.shape.profile.spacing).value);
+    // Twelve even numbers have the standard deviation 1, and are the same with every library.
+    double deviation = -6;
+    for (int k = 0; k < 12; ++k) deviation += random() * 0x1p-32;
+    const double value = evaluate(gaussian, i * kernel.shape.profile.spacing).value;
+    kernel.shape.profile.values.push_back(value * (1 + shape.noise * deviation));
   }
   return kernel;
 }
