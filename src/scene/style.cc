@@ -86,6 +86,8 @@ void draw_surfaces(const DataContents& data, Scene& scene) {
     field.transfer_function = {};
     field.isosurfaces.clear();
     field.fitted_isosurfaces = true;
+    // Of a grid of which the scene says nothing: on surfaces trilinear cells are seen.
+    if (field.grid == FieldGrid{}) field.grid->interpolation = Reconstruction::tricubic;
   }
   if (data.particles) scene.geometry = geometry_of(find_style("ball-and-stick"));
 }

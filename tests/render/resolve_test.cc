@@ -67,6 +67,19 @@ TEST_F(Resolve, MakesFieldsMoreOpaqueOverWhite) {
   EXPECT_GT(fitted(), over_black);
 }
 
+TEST_F(Resolve, MakesFieldsLessOpaqueAroundBalls) {
+  GeometrySource balls;
+  balls.index = {0};
+  balls.radius = {0};
+  const auto fitted = [&](const GeometrySource& geometry) {
+    return resolve(scene_, particles_, fields_, sources_, geometry, kernels_)
+        .transfer_functions[0]
+        .points.back()
+        .extinction;
+  };
+  EXPECT_LT(fitted(balls), 0.7 * fitted({}));
+}
+
 TEST_F(Resolve, KeepsWhatTheSceneSaysWithoutLookingAtTheData) {
   const TransferFunction function{{{1, {1, 0, 0}, 2}, {5, {0, 1, 0}, 3}}, false};
   fields_[0].transfer_function = function;
