@@ -363,7 +363,8 @@ void add_camera_options(CLI::App& command, SceneChanges& changes) {
   add_direction(command, changes, "--up",
                 "what is up in the picture (default: y, or z for a side view)",
                 [](Scene& s, const Vector3d& v) { s.up = v; });
-  add_number(command, changes, "--fov", "DEGREES", "vertical field of view (default: 45)", angle,
+  add_number(command, changes, "--fov", "DEGREES",
+             "vertical field of view\n(default: 45, less in pictures wider than 16:9)", angle,
              [](Scene& s, double v) {
                s.fov_degrees = v;
                s.orthographic_height.reset();

@@ -16,6 +16,7 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double margin = 0.96;       // of the image, that the data may fill
 constexpr double default_fov = 45;    // degrees
+constexpr double widest = 75;         // degrees across: beyond that balls become ellipses
 constexpr double nearly_cubic = 0.8;  // thinnest by largest side
 constexpr double flat = 1e-3;         // likewise: seen straight, as obliquely it would be a line
 constexpr double nearly_parallel = 0.99;  // cosine
@@ -58,6 +59,12 @@ Vector3d direction_to_eye(const Vector3d& sides, const Vector3d* up) {
   const Vector3d right = cross(above, front);
   if (sides[axis] < flat * largest) return front;
   return front + 0.4 * right + 0.3 * above;
+}
+
+/// The default, or less in wide pictures.
+double fov_for(double aspect) {
+  constexpr double degree = std::numbers::pi / 180;
+  return std::min(default_fov, 2 * std::atan(std::tan(widest / 2 * degree) / aspect) / degree);
 }
 
 /// The direction that is up where the scene does not say: the axis among y and z (in this order)
@@ -408,7 +415,7 @@ Camera fit_camera(const Scene& scene, const std::vector<VisibleSphere>& spheres,
   const Vector3d sides = box.diagonal();
   const double diagonal = length(sides) > 0 ? length(sides) : 1;
   Camera camera;
-  camera.fov_degrees = scene.fov_degrees.value_or(default_fov);
+  camera.fov_degrees = scene.fov_degrees.value_or(scene.eye ? default_fov : fov_for(aspect));
   camera.orthographic_height = scene.orthographic_height;
   camera.target = scene.target.value_or(box.center());
   // (by the diagonal: so that it is told apart from the target, however large all is)
@@ -441,8 +448,7 @@ Camera fit_camera(const Scene& scene, const std::vector<VisibleSphere>& spheres,
   const double tangent = margin * std::tan(camera.fov_degrees * std::numbers::pi / 360);
   const double room = diagonal * (scene.fov_degrees ? in_front_of_own_fov : in_front);
   // (also behind a target that lies before all of it)
-  const Placing placing =
-      place_in_front(place, tangent, std::max(nearest, 0.0) + room);
+  const Placing placing = place_in_front(place, tangent, std::max(nearest, 0.0) + room);
   camera.target = camera.target + placing.shift;
   camera.eye = camera.target - placing.distance * axes.forward;
   return camera;

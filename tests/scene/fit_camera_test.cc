@@ -175,6 +175,17 @@ TEST(FitCamera, LooksFromTheSameSideHoweverLargeAllIs) {
   }
 }
 
+TEST(FitCamera, LooksNoWiderInWidePictures) {
+  const auto points = ball(100);
+  EXPECT_EQ(fit_camera({}, points, 16. / 9).fov_degrees, 45);
+  EXPECT_EQ(fit_camera({}, points, 0.2).fov_degrees, 45);
+  const double tangent = 3 * std::tan(fit_camera({}, points, 3).fov_degrees * M_PI / 360);
+  EXPECT_NEAR(2 * std::atan(tangent) * 180 / M_PI, 75, 1e-9);
+  Scene scene;
+  scene.eye = {0, 0, 9};
+  EXPECT_EQ(fit_camera(scene, points, 3).fov_degrees, 45);
+}
+
 TEST(FitCamera, KeepsAwayFromAFewBallsBehindEachOther) {
   const std::vector<VisibleSphere> two{{{0.4, 0.3, 1}, 0.3}, {{-0.4, -0.3, -1}, 0.3}};
   const Camera camera = fit_camera({}, two, 1);
