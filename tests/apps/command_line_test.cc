@@ -260,7 +260,7 @@ TEST_F(CommandLine, SticksThatLeaveTheCellAreInThePicture) {
 TEST_F(CommandLine, OptionsOfFieldsAreRefusedWhereThereAreNone) {
   for (const std::string style : {"spheres", "ball-and-stick"}) {
     for (const std::string option : {"--radius 2", "--weight 3", "--transfer-function magma"}) {
-      EXPECT_THAT(failure("render a.xyz -o a.png --style " + style + " " + option, 1),
+      EXPECT_THAT(failure(fmt::format("render a.xyz -o a.png --style {} {}", style, option), 1),
                   HasSubstr(option.substr(0, option.find(' ')) + ": is for fields"))
           << style;
     }
