@@ -137,8 +137,7 @@ bool warn_of_levels_not_reached(const Renderer& renderer, const ResolvedScene& s
         fmt::format("the field '{}' does not reach its isosurface at {:.4g}; {} from {:.4g} "
                     "to {:.4g}",
                     printable(kernels.fields[isosurface.field].name), isosurface.value,
-                    is_grid ? "its values go" : "it goes",
-                    range.min, range.max));
+                    is_grid ? "its values go" : "it goes", range.min, range.max));
   }
   return any;
 }
