@@ -31,7 +31,7 @@ void check(const motes::ParticleSet& particles) {
   }
   for (const auto& property : particles.properties) sound = sound && property.values.size() == n;
   for (const auto& bond : particles.bonds) {
-    sound = sound && bond.first < bond.second && bond.second < n;
+    sound = sound && bond.first <= bond.second && bond.second < n;
   }
   if (!sound) std::abort();
 }
