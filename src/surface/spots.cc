@@ -10,13 +10,13 @@ namespace {
 
 /// Whether the light that reaches one spot reaches another near it alike: on a flat or smoothly
 /// bent piece of surface, not beyond an edge or a step.
-bool alike(const Spot& a, const Spot& b) {
+inline bool alike(const Spot& a, const Spot& b) {
   constexpr double least_cosine = 0.8, most_slope = 0.35;
   if (!(dot(a.normal, b.normal) > least_cosine)) return false;
   const Vector3d between = b.point.place - a.point.place;
   const double height =
       std::max(std::abs(dot(between, a.normal)), std::abs(dot(between, b.normal)));
-  return height <= most_slope * length(between);
+  return height * height <= most_slope * most_slope * dot(between, between);
 }
 
 /// Whether two spots of a pixel are of one ball, stick or piece of an isosurface: of its level
