@@ -313,39 +313,47 @@ TEST_P(GridIsosurfaces, AreCrossedWhereTheReferencesFieldCrosses) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, GridIsosurfaces, testing::Range(0, 6));
 
-// No value of the grid is the level's: there is only the face to be met.
-TEST(GridIsosurface, IsABoxWhereTheLevelEnclosesAll) {
+/// Sets c.frame to opaque isosurfaces of a cube from -4 to 4 of 9 x 9 x 9 samples, value_of(layer),
+/// seen from (0, 0, 20) against z. Returns the internal length of 1.
+template <class ValueOf>
+double make_cube(const std::vector<double>& levels, ValueOf&& value_of, Case& c) {
   auto grid = std::make_shared<Grid>();
-  grid->name = "full";
+  grid->name = "cube";
   grid->dims = {9, 9, 9};
   grid->origin = {-4, -4, -4};
   grid->steps = {Vector3d{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  for (std::size_t i = 0; i < 729; ++i) grid->values.push_back(value_of(i / 81));
+  c.grid = grid;
+  FieldSource source;
+  source.grid = c.grid;
+  c.kernels = build_kernel_set({}, {source});
+  c.fields = make_grid_fields({source});
+  set_units(c.fields, c.kernels);
+  const double scale = c.kernels.length_scale, side = 4 * scale;
+  ResolvedScene scene;
+  for (const double value : levels) scene.isosurfaces.push_back({0, value, 1, {{1, 1, 1}}});
+  FrameContext context;
+  context.kernels = &c.kernels;
+  Camera camera;
+  camera.eye = {0, 0, 20};
+  camera.target = {};
+  context.view = {
+      camera_axes(camera), Point3d{} + scale * (camera.eye - c.kernels.origin), {0, 0.5 * scale}};
+  context.box = {{-side, -side, -side}, {side, side, side}};
+  c.frame = make_isosurfaces(scene, context, c.fields, {}, {}, {}).frame;
+  return scale;
+}
+
+// No value of the grid is the level's: there is only the face to be met.
+TEST(GridIsosurface, IsABoxWhereTheLevelEnclosesAll) {
   for (const float sign : {1.0F, -1.0F}) {
-    grid->values.assign(729, 2 * sign);
     Case c;
-    FieldSource source;
-    source.grid = c.grid = grid;
-    c.kernels = build_kernel_set({}, {source});
-    c.fields = make_grid_fields({source});
-    set_units(c.fields, c.kernels);
-    const double scale = c.kernels.length_scale;
-    ResolvedScene scene;
-    scene.isosurfaces = {{0, static_cast<double>(sign), 1, {{1, 1, 1}}}};
-    FrameContext context;
-    context.kernels = &c.kernels;
-    Camera camera;
-    camera.eye = {0, 0, 20};
-    camera.target = {};
-    context.view = {
-        camera_axes(camera), Point3d{} + scale * (camera.eye - c.kernels.origin), {0, 0.5 * scale}};
-    const double side = 4 * scale;
-    context.box = {{-side, -side, -side}, {side, side, side}};
-    ImagePlane plane;
-    const auto frame = make_isosurfaces(scene, context, c.fields, plane, {}, {}).frame;
+    const double scale = make_cube(
+        {static_cast<double>(sign)}, [sign](std::size_t) { return 2 * sign; }, c);
     for (const std::string& target : instruction_sets()) {
       force_instruction_set(target);
       std::vector<IsosurfaceHit> hits;
-      trace_isosurfaces(frame, {-0.2, 0.2, 0.025, -0.025, 0, 0, 17, 17}, hits);
+      trace_isosurfaces(c.frame, {-0.2, 0.2, 0.025, -0.025, 0, 0, 17, 17}, hits);
       ASSERT_EQ(hits.size(), 17U * 17U) << target;
       for (const IsosurfaceHit& hit : hits) {
         EXPECT_NEAR(hit.depth, 16 * scale, 1e-4 * scale) << target;
@@ -358,67 +366,22 @@ TEST(GridIsosurface, IsABoxWhereTheLevelEnclosesAll) {
 
 // On a face what is farther from 0 is seen, in whatever order the scene has the levels.
 TEST(GridIsosurface, ShowsTheInnermostOfSeveralCaps) {
-  auto grid = std::make_shared<Grid>();
-  grid->name = "full";
-  grid->dims = {9, 9, 9};
-  grid->origin = {-4, -4, -4};
-  grid->steps = {Vector3d{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  grid->values.assign(729, 2);
   Case c;
-  FieldSource source;
-  source.grid = c.grid = grid;
-  c.kernels = build_kernel_set({}, {source});
-  c.fields = make_grid_fields({source});
-  set_units(c.fields, c.kernels);
-  const double scale = c.kernels.length_scale, side = 4 * scale;
-  FrameContext context;
-  context.kernels = &c.kernels;
-  Camera camera;
-  camera.eye = {0, 0, 20};
-  camera.target = {};
-  context.view = {
-      camera_axes(camera), Point3d{} + scale * (camera.eye - c.kernels.origin), {0, 0.5 * scale}};
-  context.box = {{-side, -side, -side}, {side, side, side}};
-  ResolvedScene scene;
-  for (const double value : {0.5, 1.5, 1.0})
-    scene.isosurfaces.push_back({0, value, 1, {{1, 1, 1}}});
-  const auto frame = make_isosurfaces(scene, context, c.fields, {}, {}, {}).frame;
+  make_cube(
+      {0.5, 1.5, 1.0}, [](std::size_t) { return 2.0F; }, c);
   std::vector<IsosurfaceHit> hits;
-  trace_isosurfaces(frame, {0, 0, 0.01, 0.01, 0, 0, 1, 1}, hits);
+  trace_isosurfaces(c.frame, {0, 0, 0.01, 0.01, 0, 0, 1, 1}, hits);
   ASSERT_EQ(hits.size(), 1u);
   EXPECT_EQ(hits[0].level, 1u);
 }
 
 TEST(GridIsosurface, HidesTheLightOfWhatIsWithin) {
   // A field that is the height along z above the grid's middle: level 1 is a plane.
-  auto grid = std::make_shared<Grid>();
-  grid->name = "height";
-  grid->dims = {9, 9, 9};
-  grid->origin = {-4, -4, -4};
-  grid->steps = {Vector3d{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  for (std::size_t i = 0; i < 729; ++i) {
-    const std::size_t layer = i / 81;
-    grid->values.push_back(static_cast<float>(layer) - 4);
-  }
   Case c;
-  c.grid = grid;
-  FieldSource source;
-  source.grid = c.grid;
-  c.kernels = build_kernel_set({}, {source});
-  c.fields = make_grid_fields({source});
-  set_units(c.fields, c.kernels);
-  const double scale = c.kernels.length_scale;
-  ResolvedScene scene;
-  scene.isosurfaces = {{0, 1, 1, {{1, 1, 1}}}};
-  FrameContext context;
-  context.kernels = &c.kernels;
-  context.view = {camera_axes(Camera{}), {}, {0, 0.5 * scale}};
-  const double side = 4 * scale;
-  context.box = {{-side, -side, -side}, {side, side, side}};
-  ImagePlane plane;
-  const auto frame = make_isosurfaces(scene, context, c.fields, plane, {}, {}).frame;
-  auto wide = frame;  // what else is drawn makes the box larger
-  wide.box = {Point3d{} + 2.0 * Vector3d(frame.box.min), Point3d{} + 2.0 * Vector3d(frame.box.max)};
+  const double scale = make_cube(
+      {1}, [](std::size_t layer) { return static_cast<float>(layer) - 4; }, c);
+  IsosurfaceFrame wide = c.frame;  // what else is drawn makes the box larger
+  wide.box = {Point3d{} + 2.0 * Vector3d(wide.box.min), Point3d{} + 2.0 * Vector3d(wide.box.max)};
   const Point3d start = Point3d{} + scale * (Point3d{0.2, 0.1, -0.6} - c.kernels.origin);
   const std::vector<Vector3f> all = {{0, 0, 1}, {0, 0, -1}, {1, 0, 0}, {0.6F, 0, 0.8F}};
   // From beside the field: what the level encloses is met at its face.
@@ -426,11 +389,11 @@ TEST(GridIsosurface, HidesTheLightOfWhatIsWithin) {
   for (const std::string& target : instruction_sets()) {
     force_instruction_set(target);
     std::vector<Vector3f> far = all, near = all;
-    prune(frame, start, {0, 0, 1}, 3 * scale, far);
+    prune(c.frame, start, {0, 0, 1}, 3 * scale, far);
     ASSERT_EQ(far.size(), 2u) << target;
     EXPECT_EQ(far[0].z, -1);
     EXPECT_EQ(far[1].x, 1);
-    prune(frame, start, {0, 0, 1}, 1.5 * scale, near);
+    prune(c.frame, start, {0, 0, 1}, 1.5 * scale, near);
     EXPECT_EQ(near.size(), 4u) << target;
     std::vector<Vector3f> capped = {{1, 0, 0}, {-1, 0, 0}, {0.8F, 0, -0.6F}};
     prune(wide, beside, {-1, 0, 0}, 8 * scale, capped);
