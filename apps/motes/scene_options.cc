@@ -14,48 +14,11 @@
 
 #include "core/error.h"
 #include "document/input.h"
+#include "motes/option_values.h"
 #include "scene/style.h"
 
 namespace motes {
 namespace {
-
-/// A bad value: what was expected, and what was found.
-[[noreturn]] void bad_value(std::string_view option, std::string_view expected,
-                            std::string_view found) {
-  throw CLI::ValidationError(
-      fmt::format("{}: expected {}, found '{}'", option, expected, printable(found)),
-      CLI::ExitCodes::ValidationError);
-}
-
-/// The number that `text` is; it may be infinite or NaN.
-std::optional<double> number_in(std::string_view text) {
-  if (text.starts_with('+')) text.remove_prefix(1);
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-  return value;
-}
-
-std::optional<std::array<double, 3>> triple_in(std::string_view text) {
-  std::array<double, 3> values{};
-  for (std::size_t k = 0; k < 3; ++k) {
-    const auto comma = text.find(',');
-    if ((comma == std::string_view::npos) != (k == 2)) return std::nullopt;
-    const auto value = number_in(text.substr(0, comma));
-    if (!value || !std::isfinite(*value)) return std::nullopt;
-    values[k] = *value;
-    text.remove_prefix(k == 2 ? text.size() : comma + 1);
-  }
-  return values;
-}
-
-/// The same, if it is not zero.
-std::optional<Vector3d> direction_in(std::string_view text) {
-  const auto values = triple_in(text);
-  if (!values) return std::nullopt;
-  const Vector3d v{(*values)[0], (*values)[1], (*values)[2]};
-  return length(v) > 0 ? std::optional(v) : std::nullopt;
-}
 
 /// Adds an option with one value; `read` makes a change of the scene out of its text.
 void add_option(CLI::App& command, SceneChanges& changes, const std::string& name,
@@ -86,16 +49,6 @@ CLI::Option* add_repeatable(CLI::App& command, SceneChanges& changes, const std:
       ->allow_extra_args(false);
 }
 
-struct NumberRange {
-  double above;
-  double up_to = std::numeric_limits<double>::infinity();
-  bool end_included = true;
-  std::string_view expected;
-
-  bool contains(double v) const {
-    return std::isfinite(v) && v > above && (end_included ? v <= up_to : v < up_to);
-  }
-};
 constexpr double no_limit = -std::numeric_limits<double>::infinity();
 constexpr NumberRange any_number{no_limit, -no_limit, true, "a number"};
 constexpr NumberRange positive{0, -no_limit, true, "a number greater than 0"};

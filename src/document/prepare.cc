@@ -75,12 +75,11 @@ void tell_of_hidden_grids(const std::vector<Field>& wanted, const std::vector<Fi
       return of_scene.grid && of_scene.grid->path == field.grid->path &&
              (of_scene.grid->array == field.grid->array || !of_scene.visible);
     };
-    if (field.visible || !field.grid || std::any_of(wanted.begin(), wanted.end(), says_so))
-      continue;
+    if (field.visible || !field.grid) continue;
+    if (std::any_of(wanted.begin(), wanted.end(), says_so)) continue;
     warnings.add(
         fmt::format("the grid '{0}' is not shown: of several of both signs only the first is; a "
-                    "scene that asks "
-                    "for it (\"array\": \"{0}\") shows it",
+                    "scene that asks for it (\"array\": \"{0}\") shows it",
                     printable(field.grid->array)));
   }
 }

@@ -172,11 +172,9 @@ CubeHeader read_header(const std::filesystem::path& path, LineReader& lines,
   header.shape.periodic = title.find("PWScf") != std::string_view::npos ||
                           second_title.find("FFT grid") != std::string_view::npos;
 
+  check_steps(path, header.shape);
   std::optional<Cell> cell;
-  if (header.shape.periodic) {
-    check_steps(path, header.shape);
-    cell = cell_of(header.shape);
-  }
+  if (header.shape.periodic) cell = cell_of(header.shape);
   read_atoms(path, lines, static_cast<std::uint64_t>(std::abs(first.count)), unit, cell, options,
              header.atoms);
   header.names = has_orbitals ? read_orbitals(lines) : numbered_names(first.behind);
@@ -187,7 +185,6 @@ std::unique_ptr<Trajectory> open_cube(const std::filesystem::path& path,
                                       const ReadOptions& options) {
   CubeHeader header = parse_head(
       path, options, [&](LineReader& lines) { return read_header(path, lines, options); });
-  check_steps(path, header.shape);
   header.atoms.length_unit = header.shape.length_unit;
   header.atoms.cell = cell_of(header.shape);
   std::vector<ParticleSet> frames;
@@ -199,7 +196,6 @@ std::vector<Grid> read_cube_grids(const std::filesystem::path& path, const ReadO
   const FileContent content(path, options);
   LineReader lines(path, {content.bytes(), 1}, true);
   const CubeHeader header = read_header(path, lines, options);
-  check_steps(path, header.shape);
   const auto& dims = header.shape.dims;
   const std::size_t num_fields = header.names.size();
   const std::uint64_t num_samples = count_samples(path, dims, num_fields);

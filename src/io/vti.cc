@@ -98,6 +98,7 @@ class ArrayReader {
         end = std::min(end, other.offset);
       }
     }
+    end = std::max(end, array_.offset);
     const std::string_view rest = header_.appended.substr(array_.offset, end - array_.offset);
     // (text ends where XML goes on)
     return header_.appended_base64 ? rest.substr(0, rest.find('<')) : rest;

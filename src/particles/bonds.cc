@@ -32,10 +32,14 @@ BondRule::BondRule(const std::vector<std::string>& species_names) {
   }
 }
 
+bool bond_comes_first(const Bond& a, const Bond& b) {
+  return std::tie(a.first, a.second, a.image) < std::tie(b.first, b.second, b.image);
+}
+
 void sort_bonds(std::vector<Bond>& bonds) {
-  tbb::parallel_sort(bonds.begin(), bonds.end(), [](const Bond& a, const Bond& b) {
-    return std::tie(a.first, a.second, a.image) < std::tie(b.first, b.second, b.image);
-  });
+  // (a lambda, which the sort can inline)
+  tbb::parallel_sort(bonds.begin(), bonds.end(),
+                     [](const Bond& a, const Bond& b) { return bond_comes_first(a, b); });
 }
 
 std::vector<Bond> file_bonds(const ParticleSet& particles, Warnings& warnings) {

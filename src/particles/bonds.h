@@ -45,7 +45,9 @@ class BondRule {
   double longest_ = 0;
 };
 
-/// By first, then second, then image. In parallel.
+/// The order of bonds: by first, then second, then image.
+bool bond_comes_first(const Bond& a, const Bond& b);
+/// In parallel.
 void sort_bonds(std::vector<Bond>& bonds);
 
 /// The bonds that the particles came with, each once, sorted. Those of a particle to itself are

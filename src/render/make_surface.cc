@@ -5,6 +5,7 @@
 #include <iterator>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "particles/bonds.h"
 #include "scene/transfer_function.h"
@@ -112,11 +113,15 @@ Surface make_surface(const ParticleSet& particles, GeometrySource& geometry,
   set_colors(geometry, drawn, surface.colors);
   field_values = find_field_values(kernels, geometry, particle_of, drawn);
   if (!geometry.bonds_among.empty()) {
-    const auto found = find_bonds(particles, geometry.bonds_among, particle_of, kernels);
-    geometry.bonds.insert(geometry.bonds.end(), found.begin(), found.end());
-    sort_bonds(geometry.bonds);
-    geometry.bonds.erase(std::unique(geometry.bonds.begin(), geometry.bonds.end()),
-                         geometry.bonds.end());
+    // Both sorted: those of the file, which there may be too, are mostly found again.
+    std::vector<Bond> found = find_bonds(particles, geometry.bonds_among, particle_of, kernels);
+    if (!geometry.bonds.empty()) {
+      const std::vector<Bond> of_file = std::exchange(geometry.bonds, {});
+      std::set_union(of_file.begin(), of_file.end(), found.begin(), found.end(),
+                     std::back_inserter(geometry.bonds), bond_comes_first);
+    } else {
+      geometry.bonds = std::move(found);
+    }
   }
   if (!geometry.bonds.empty()) {
     surface.sticks = make_sticks(particles, geometry.bonds, particle_of, kernels,

@@ -92,10 +92,7 @@ ResolvedScene resolve(const Scene& scene, const ParticleSet& particles,
     profiles = sample_view(kernels, resolved.camera, scene.render.width, scene.render.height,
                            progress, grids);
   }
-  // Balls and sticks within are to be seen.
-  constexpr double around_solids = 0.6;
-  const double opacity =
-      fit_opacity(profiles, scene.render.background) * (geometry.empty() ? 1 : around_solids);
+  const double opacity = fit_opacity(profiles, scene.render.background, !geometry.empty());
   for (std::size_t f = 0; f < fields.size(); ++f) {
     const Field& field = fields[f];
     const FieldColors& colors = sources[f].colors;

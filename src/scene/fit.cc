@@ -24,6 +24,7 @@ constexpr std::size_t radii_looked_at = 65536;  // of one field: enough for a qu
 constexpr double log_decades = 2.5;
 // Of the rays that meet matter, on average: neither fog nor block. Several fields share it.
 constexpr double target_over_black = 0.7, target_over_white = 0.9;  // white bleaches
+constexpr double part_around_solids = 0.6;  // of these: balls and sticks within are to be seen
 // Where values span decades, what is dense lies behind much that is not. So the extinction rises
 // with this power of the place in the range, and this much of the light of the densest place on a
 // ray comes through what is in front of it, unless so little opacity is left that all is faint.
@@ -245,8 +246,10 @@ double default_step_size(const std::vector<FieldSource>& fields, const Bounds3d&
   return std::max(step, length(box.diagonal()) / max_samples);
 }
 
-double fit_opacity(const std::vector<RayProfiles>& profiles, const Color& background) {
+double fit_opacity(const std::vector<RayProfiles>& profiles, const Color& background,
+                   bool around_solids) {
   const double target =
+      (around_solids ? part_around_solids : 1) *
       std::lerp(target_over_black, target_over_white, std::min(luminance(background), 1.0));
   if (profiles.size() < 2) return target;
   // How many rays meet 1, 2, ... fields.

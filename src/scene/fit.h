@@ -65,8 +65,10 @@ struct RayProfiles {
 
 /// How opaque each of several fields should make the rays that meet it, so that rays that meet
 /// matter come to the opacity of a good picture: on average 0.7 over black and 0.9 over white,
-/// which would bleach them. `profiles`: one a field, of the same rays.
-double fit_opacity(const std::vector<RayProfiles>& profiles, const Color& background);
+/// which would bleach them; around balls or sticks, which are to be seen within, six tenths of
+/// that. `profiles`: one a field, of the same rays.
+double fit_opacity(const std::vector<RayProfiles>& profiles, const Color& background,
+                   bool around_solids = false);
 
 /// The transfer function that `wish` (or nothing: a default) comes to in this view. What it leaves
 /// open:

@@ -52,19 +52,20 @@ std::vector<float> radii_of(const ParticleSet& particles, const Geometry& item,
 }
 
 /// All particles' values of what a colour goes by: a property, or a coordinate unless a property
-/// has its name.
-std::vector<float> color_values(const ParticleSet& particles, const std::string& name) {
+/// has its name; coordinates are in `storage`.
+const std::vector<float>& color_values(const ParticleSet& particles, const std::string& name,
+                                       std::vector<float>& storage) {
   static const std::vector<std::string> coordinates{"x", "y", "z"};
   const auto at = std::find(coordinates.begin(), coordinates.end(), name);
   if (particles.find_property(name) != nullptr || at == coordinates.end()) {
     return property_named(particles, name, coordinates).values;
   }
   const auto axis = static_cast<int>(at - coordinates.begin());
-  std::vector<float> values(particles.size());
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    values[i] = static_cast<float>(particles.position(i)[axis]);
+  storage.resize(particles.size());
+  for (std::size_t i = 0; i < storage.size(); ++i) {
+    storage[i] = static_cast<float>(particles.position(i)[axis]);
   }
-  return values;
+  return storage;
 }
 
 /// Of those of the particles in `index` that are finite.
@@ -82,7 +83,8 @@ std::pair<double, double> range_of(const std::vector<float>& values,
 std::vector<std::uint32_t> colors_by_property(const ParticleSet& particles,
                                               const ColorByProperty& color,
                                               const std::vector<std::uint32_t>& index) {
-  const std::vector<float> values = color_values(particles, color.property);
+  std::vector<float> storage;
+  const std::vector<float>& values = color_values(particles, color.property, storage);
   const auto [low, high] = color.range.value_or(range_of(values, index));
   constexpr std::size_t steps = 256;
   std::vector<std::uint32_t> table(steps);
@@ -266,7 +268,8 @@ void fill_in_colors(const ParticleSet& particles, std::vector<Geometry>& geometr
   for (Geometry& item : geometry) {
     auto* const color = std::get_if<ColorByProperty>(&item.color);
     if (color == nullptr || color->range) continue;
-    const auto range = range_of(color_values(particles, color->property),
+    std::vector<float> storage;
+    const auto range = range_of(color_values(particles, color->property, storage),
                                 select_particles(particles, item.select));
     if (range.first < range.second) color->range = range;
   }

@@ -142,6 +142,23 @@ TEST(Geometry, CutsTheVolumeWhereRaysMeetIt) {
   }
 }
 
+TEST(Geometry, JoinsBondsByDistanceToThoseOfTheFile) {
+  PlainScene s = plain_scene({{0, 0, 0}, {1.5, 0, 0}, {5, 0, 0}}, 16);
+  s.particles.species_names = {"C"};
+  s.particles.species = {0, 0, 0};
+  const auto bonds = [&](const std::vector<Bond>& of_file, bool by_distance) {
+    GeometrySource geometry = balls({0, 1, 2}, 0.2F);
+    geometry.stick_radius = 0.1F;
+    geometry.bonds = of_file;
+    if (by_distance) geometry.bonds_among = {true, true, true};
+    const Renderer renderer(s.particles, s.scene.fields, geometry);
+    return geometry.bonds;
+  };
+  EXPECT_EQ(bonds({}, true), (std::vector<Bond>{{0, 1}}));
+  EXPECT_EQ(bonds({{0, 2}}, false), (std::vector<Bond>{{0, 2}}));
+  EXPECT_EQ(bonds({{0, 1}, {1, 2}}, true), (std::vector<Bond>{{0, 1}, {1, 2}})) << "each once";
+}
+
 TEST(Geometry, IsDrawnWithoutAnyField) {
   PlainScene s = plain_scene(some_points(), 16);
   s.scene.fields.clear();
